@@ -538,21 +538,23 @@ int32_t feti_body_coordinates(struct feti_problem *p,
 
 /**
  * Says how to use the rigid body motions that the coordinates give: as candidates for the null
- * space, or as motions that K resists weakly.
+ * space, as the null space, or as motions that K resists weakly.
  *
  * The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given
- * before or after this call; the default is FETI_CANDIDATES. With FETI_SOFT, weak springs,
- * rounding of the entries of K, geometric stiffness and supports may give the motions a positive
- * or negative stiffness, and the motions need not be exact. The library computes the motions and
- * their stiffness from K and takes them into account exactly, as it does for motions given to
- * feti_body_null_space with FETI_SOFT. That function also describes what happens if K is
- * indefinite or has further null vectors. The flag has no effect without coordinates or if a null
- * space was given. FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator).
- * After a failure the body keeps its previous flag.
+ * before or after this call; the default is FETI_CANDIDATES. With FETI_EXACT you declare that the
+ * body floats as a whole: feti_setup refuses the body, and names the unknown, if K resists a rigid
+ * body motion by more than rounding, for example because a coefficient is missing. With FETI_SOFT,
+ * weak springs, rounding of the entries of K, geometric stiffness and supports may give the
+ * motions a positive or negative stiffness, and the motions need not be exact. The library
+ * computes the motions and their stiffness from K and takes them into account exactly, as it does
+ * for motions given to feti_body_null_space with FETI_SOFT. That function also describes what
+ * happens if K is indefinite or has further null vectors. The flag has no effect without
+ * coordinates or if a null space was given. FETI_UNSUPPORTED from feti_setup if the host provides
+ * K+ (feti_body_operator). After a failure the body keeps its previous flag.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0
- * @param[in] flags (scalar) FETI_CANDIDATES or FETI_SOFT
+ * @param[in] flags (scalar) FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
  */
 int32_t feti_body_coordinates_flags(struct feti_problem *p, int64_t body, int32_t flags);
 

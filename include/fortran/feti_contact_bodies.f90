@@ -161,7 +161,8 @@ contains
   end subroutine
 
   !> How the library uses the rigid body motions that the coordinates of a body give, whether the coordinates come before
-  !> or after this call. flags: FETI_CANDIDATES is the default; with FETI_SOFT, weak springs, rounding or geometric
+  !> or after this call. flags: FETI_CANDIDATES is the default; with FETI_EXACT, the body floats as a whole, and setup refuses
+  !> it if K resists one of the motions; with FETI_SOFT, weak springs, rounding or geometric
   !> stiffness may resist or drive the motions, and the library computes the exact motions from K.
   recursive subroutine body_coordinates_flags(p, body, flags, stat, errmsg)
     type(feti_problem), intent(in) :: p

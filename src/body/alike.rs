@@ -27,7 +27,7 @@ pub fn same_matrix(a: &Symmetric, b: &Symmetric) -> bool {
 /// Whether the input for both bodies is equal, apart from matrix and load.
 fn same_input(a: &Body, b: &Body) -> bool {
     a.fixing == b.fixing
-        && a.soft_coordinates == b.soft_coordinates
+        && a.coordinate_modes == b.coordinate_modes
         && same_option(&a.null_space, &b.null_space, same_vectors)
         && same_option(&a.coordinates, &b.coordinates, Coordinates::same)
 }
@@ -100,12 +100,13 @@ mod tests {
 
     #[test]
     fn equal_coordinates_of_soft_motions_and_of_candidates_say_different_things() {
-        let placed = |soft_coordinates: bool| {
+        let placed = |coordinate_modes: Modes| {
             let coordinates = Some(Coordinates::new(1, &[1, 1], &[0.0, 1.0], 1).unwrap());
             let stiffness = Some(std::sync::Arc::new(chain(1.0)));
-            Body { order: 2, stiffness, coordinates, soft_coordinates, ..Body::default() }
+            Body { order: 2, stiffness, coordinates, coordinate_modes, ..Body::default() }
         };
-        assert!(same_body(&placed(true), &placed(true)) && !same_body(&placed(true), &placed(false)));
+        let all = [Modes::Exact, Modes::Candidates, Modes::Soft];
+        assert!(all.iter().all(|a| all.iter().all(|b| same_body(&placed(*a), &placed(*b)) == (a == b))));
     }
 
     #[test]

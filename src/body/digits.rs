@@ -11,8 +11,8 @@ use crate::platform::memory::{reserved, zeros};
 /// Number of rows in the sample, and of entries per row.
 const ROWS: usize = 64;
 const ENTRIES: usize = 16;
-/// Fewer digits mean round numbers, ...
-const FEWEST: usize = 7;
+/// Fewer digits mean round numbers, unless K shows their rounding, ...
+pub(super) const FEWEST: usize = 7;
 /// ... and about one in a hundred double precision numbers needs no more than `MOST` digits.
 const MOST: usize = 15;
 /// Required part of the off-diagonal entries that need the last digit or the last but one: 99 of 100 rounded numbers do,
@@ -23,13 +23,19 @@ const USED: f64 = 0.4;
 const BITS: u32 = 20;
 /// The entries of a body are exact if at least this part of its rows sums to 0.
 const EXACT: f64 = 0.9;
+/// Entries are compared with the first `MODULI` values that are not in simple ratios; a ratio p / q is simple if p and q
+/// do not exceed these.
+const MODULI: usize = 8;
+const SIMPLE: [f64; 2] = [4096.0, 64.0];
+/// Rounding of a pivot that cancels, relative to rounding of a single entry.
+const PIVOT: f64 = 10.0;
 /// Bound of a row sum that is 0 up to rounding of its terms.
 const SUM: f64 = 2.0 * f64::EPSILON;
 
 /// The precision to which the entries of a matrix were rounded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Digits {
-    /// Significant decimal digits, 7 to 15.
+    /// Significant decimal digits, up to 15.
     Decimal(usize),
     /// Single precision.
     Single,
@@ -45,31 +51,51 @@ impl fmt::Display for Digits {
 }
 
 impl Digits {
+    /// From this number of digits on, resistance that may be rounding is reported.
+    pub const TOLD: usize = 3;
+
     /// `None` if the entries have double precision, or few digits because they are exact: most entries need fewer digits
     /// than the longest, or nearly every row sums to 0, as for springs between dofs.
     pub fn of(k: &Symmetric) -> Result<Option<Self>> {
+        Self::of_least(k, FEWEST)
+    }
+
+    /// The same, from this number of digits on.
+    pub fn of_least(k: &Symmetric, fewest: usize) -> Result<Option<Self>> {
         let sampled = sampled(k);
         let used = |uses: &dyn Fn(f64) -> bool| {
             let beside = || sampled.iter().filter(|entry| entry.1);
             let count = beside().filter(|entry| uses(entry.0)).count();
             count > 0 && count as f64 >= USED * beside().count() as f64
         };
-        let found = Self::among(&sampled, used);
+        let found = Self::among(&sampled, fewest, used);
         Ok(if found.is_some() && sums_are_exact(k)? { None } else { found })
     }
 
     /// The digits without these two exceptions: K has negative stiffness along a motion, so its entries cannot be exact.
-    pub fn of_rounded(k: &Symmetric) -> Option<Self> {
-        Self::among(&sampled(k), |_| true)
+    pub fn of_rounded(k: &Symmetric, fewest: usize) -> Option<Self> {
+        Self::among(&sampled(k), fewest, |_| true)
     }
 
-    fn among(sampled: &[(f64, bool)], used: impl Fn(&dyn Fn(f64) -> bool) -> bool) -> Option<Self> {
+    /// So few digits that the numbers may also be round: only motions that show the rounding may tell.
+    pub fn are_few(self) -> bool {
+        matches!(self, Self::Decimal(digits) if digits < FEWEST)
+    }
+
+    fn among(
+        sampled: &[(f64, bool)],
+        fewest: usize,
+        used: impl Fn(&dyn Fn(f64) -> bool) -> bool,
+    ) -> Option<Self> {
         let digits = decimal(sampled);
-        let digits = digits.filter(|&digits| digits >= FEWEST && used(&|v| !has(v, digits - 2)));
+        if digits.is_some_and(|digits| digits < fewest) {
+            return None;
+        }
+        let digits = digits.filter(|&digits| used(&|v| !has(v, digits - 2)));
         let single = sampled.iter().all(|&(v, _)| f64::from(v as f32) == v) && used(&|v| bits(v) >= BITS);
         // large numbers in single precision are integers with few digits
         match digits {
-            Some(digits) if digits == FEWEST || !single => Some(Self::Decimal(digits)),
+            Some(digits) if digits <= FEWEST || !single => Some(Self::Decimal(digits)),
             _ => single.then_some(Self::Single),
         }
     }
@@ -87,8 +113,14 @@ impl Digits {
         self.unit(1.0)
     }
 
+    /// The relative pivot that rounding of the entries may leave in place of 0: then the dof must be in t.
+    pub fn pivot(self) -> f64 {
+        PIVOT * self.relative()
+    }
+
     /// Standard deviation of `v'E v` for each of `count` motions v, E the rounding of the entries in the rows of one
-    /// part: equal entries have equal errors, different entries independent errors. `v(i, c)` is motion c at dof i.
+    /// part: the errors of entries in a simple ratio have this ratio, those of other entries are independent. A matrix of
+    /// round numbers with one modulus has a single error, which resists no motion. `v(i, c)` is motion c at dof i.
     pub fn noise(
         self,
         k: &Symmetric,
@@ -97,16 +129,26 @@ impl Digits {
         v: impl Fn(usize, usize) -> f64,
     ) -> Result<Vec<f64>> {
         const WHAT: &str = "the rounding of a stiffness matrix";
-        let mut slots: HashMap<u64, usize> = HashMap::new();
+        let mut slots: HashMap<u64, (usize, f64)> = HashMap::new();
         let entries = rows.iter().map(|&i| k.ptr[i + 1] - k.ptr[i]).sum::<usize>();
-        let (mut units, mut sums) = (reserved(entries, WHAT)?, zeros(entries * count, WHAT)?);
+        // the first entry of each slot, and the spacing at it
+        let (mut first, mut units, mut sums) =
+            (reserved(entries, WHAT)?, reserved(entries, WHAT)?, zeros(entries * count, WHAT)?);
         for &i in rows {
             for (j, value) in k.lower_row(i).filter(|entry| entry.1 != 0.0) {
-                let slot = *slots.entry(value.abs().to_bits()).or_insert(units.len());
-                if slot == units.len() {
-                    units.push(self.unit(value));
-                }
-                let times = if i == j { value.signum() } else { 2.0 * value.signum() };
+                let size = value.abs();
+                let (slot, ratio) = *slots.entry(size.to_bits()).or_insert_with(|| {
+                    let like = first.iter().take(MODULI).position(|&first| in_simple_ratio(first, size));
+                    let slot = like.unwrap_or(first.len());
+                    if like.is_none() {
+                        first.push(size);
+                        units.push(f64::INFINITY);
+                    }
+                    let ratio = size / first[slot];
+                    units[slot] = units[slot].min(self.unit(size) / ratio);
+                    (slot, ratio)
+                });
+                let times = ratio * if i == j { value.signum() } else { 2.0 * value.signum() };
                 (0..count).for_each(|c| sums[slot * count + c] += times * v(i, c) * v(j, c));
             }
         }
@@ -150,6 +192,23 @@ fn decimal(numbers: &[(f64, bool)]) -> Option<usize> {
 /// Whether `v` printed with this many significant digits and read again is `v`.
 fn has(v: f64, digits: usize) -> bool {
     format!("{v:.*e}", digits.saturating_sub(1)).parse() == Ok(v)
+}
+
+/// Whether the ratio of two positive numbers is exactly a simple one.
+fn in_simple_ratio(a: f64, b: f64) -> bool {
+    let (small, large) = (a.min(b), a.max(b));
+    let mut q = 1.0;
+    while q <= SIMPLE[1] {
+        let p = (q * large / small).round();
+        if p > SIMPLE[0] {
+            return false;
+        }
+        if p * small == q * large {
+            return true;
+        }
+        q += 1.0;
+    }
+    false
 }
 
 /// Number of bits from the first to the last 1, of a normal number.

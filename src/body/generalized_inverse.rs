@@ -2,10 +2,10 @@
 //! (15): `K+ = P [F^-1 0; 0 0] P'`.
 //! Symmetric and reflexive (`K K+ K = K`, `K+ K K+ = K+`), not the Moore-Penrose inverse.
 
-use std::fmt;
 use std::sync::Arc;
 
 use crate::body::carried::{self, Carried, Motions};
+use crate::body::misfit::Misfit;
 use crate::body::null_space::{one_column_each, ROUNDING as KNOWN};
 use crate::body::probe::{known_to, Factor};
 use crate::body::rounded::Rounded;
@@ -36,7 +36,8 @@ pub struct GeneralizedInverse {
     pub softness: f64,
     /// Motions, part by part, whose resistance may be only rounding of the entries of K.
     pub doubts: Vec<Doubt>,
-    /// Coordinates that did not fit: the library searched the null space in K.
+    /// Coordinates or candidates of which not all fit: with `gap`, the library searched the null space in K; otherwise K
+    /// holds the others.
     pub misfit: Option<Misfit>,
     pub(super) factor: Factor,
     /// The correction of K+ for the carried motions, which are the last.
@@ -54,22 +55,6 @@ pub struct Factorised {
     pub further_analyses: usize,
     /// Numeric factorisations, including those that missed a motion of the null space.
     pub factorisations: usize,
-}
-
-/// Rigid motions of coordinates of which not all fit K.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Misfit {
-    pub fit: usize,
-    pub of: usize,
-    /// The least `|D^-1 K v|` of a unit vector v among the others.
-    pub next: f64,
-}
-
-impl fmt::Display for Misfit {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { fit, of, next } = self;
-        write!(out, "{fit} of {of} rigid motions of these coordinates fit K, the next leaves |K R| = {next:.1e} |D||R|")
-    }
 }
 
 /// The input of a symbolic analysis besides the pattern of K. Bodies with the same pattern and layout share one analysis.

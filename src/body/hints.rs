@@ -1,15 +1,17 @@
 //! Null spaces and soft motions from coordinates.
 //!
 //! Coordinates are hints: if all their rigid motions fit K, the null space is known before the factorisation. If K
-//! resists some of them and is nevertheless singular (coordinates of another state, a body of revolution), the null space is searched in K.
+//! resists some of them and is nevertheless singular (coordinates of another state, a body of revolution), or if it has further
+//! null vectors (a hinge), the null space is searched in K.
 
+use crate::body::candidates::{kernel_by_parts, KernelByParts, CANDIDATE};
 use crate::body::digits::Digits;
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{GeneralizedInverse, Misfit};
+use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::known::{Known, Retry};
+use crate::body::misfit::{Misfit, RESISTED};
 use crate::body::null_space::{
-    kernel_by_parts, one_column_each, verified_by_parts, FreePart, KernelByParts, Verified, CANDIDATE,
-    ROUNDING,
+    one_column_each, verified_by_parts, FreePart, Modes, NullSpaceInput, Verified, ROUNDING,
 };
 use crate::body::plan::Plan;
 use crate::body::rigid_modes::RigidModes;
@@ -23,10 +25,12 @@ use crate::platform::memory::{headroom, PRODUCTS};
 const MIXED: f64 = 16.0;
 
 impl GeneralizedInverse {
-    /// Null space and fixing dofs of `k` from the rigid motions of coordinates, as far as these fit K.
+    /// Null space and fixing dofs of `k` from the rigid motions of coordinates, as far as these fit K. If the motions are
+    /// exact, those that K resists by more than rounding are refused.
     pub fn plan_near(
         k: Multiple,
         rigid: &RigidModes,
+        modes: Modes,
         tolerance: f64,
         fixing: Option<&[usize]>,
     ) -> Result<Plan> {
@@ -34,25 +38,29 @@ impl GeneralizedInverse {
         let _room = headroom(64 * n * size_of::<f64>() + PRODUCTS, "the null space of a body")?;
         let KernelByParts { kernel, counts, candidates, next } =
             kernel_by_parts(&k, &rigid.modes, &rigid.parts(), CANDIDATE)?;
-        let fit = counts.iter().sum();
-        if fit == candidates {
-            return Self::known(k, &kernel, (rigid, &counts), (tolerance, None), fixing);
-        }
-        let misfit = Misfit { fit, of: candidates, next };
-        if let Some(digits) = Digits::of(&k.matrix)? {
+        let misfit = Misfit { fit: counts.iter().sum(), of: candidates, next };
+        let digits = if misfit.fit < misfit.of { Digits::of_least(&k.matrix, Digits::TOLD)? } else { None };
+        if let Some(digits) = digits {
             if let Some(doubt) = explained(&k, digits, rigid)? {
                 let told = Some(doubt).filter(|doubt| doubt.resisted > CANDIDATE);
                 let tolerance = tolerance.max(MIXED * doubt.resisted);
                 let counts = &rigid.counts;
                 return Self::known(k, &rigid.modes, (rigid, counts), (tolerance, told), fixing);
             }
-            return Ok(Plan::Search(Search::new(k, tolerance, fixing)?.instead_of(misfit)));
+            if !digits.are_few() && modes != Modes::Exact {
+                return Ok(Plan::Search(Search::new(k, tolerance, fixing)?.instead_of(misfit)));
+            }
+        }
+        if modes == Modes::Exact && misfit.fit < misfit.of {
+            let all = kernel_by_parts(&k, &rigid.modes, &rigid.parts(), f64::INFINITY)?;
+            return Self::known(k, &all.kernel, (rigid, &all.counts), (tolerance, None), fixing);
         }
         let given = fixing.map(<[usize]>::to_vec);
         let planned = Self::known(k.clone(), &kernel, (rigid, &counts), (tolerance, None), fixing);
         match planned {
             Ok(Plan::Known(known)) => Ok(Plan::Known(Known {
-                retry: Some(Retry { misfit: Some(misfit), tolerance, fixing: given }),
+                misfit: Some(misfit),
+                retry: Some(Retry::Search { tolerance, fixing: given }),
                 ..known
             })),
             Err(Error { kind: Kind::NullSpace, .. }) => {
@@ -66,9 +74,14 @@ impl GeneralizedInverse {
     /// everything else of the motions that move them: motions that do not move supports are separated first.
     pub fn plan_soft(k: Multiple, rigid: &RigidModes, fixing: Option<&[usize]>) -> Result<Plan> {
         let _room = headroom(64 * k.order() * size_of::<f64>() + PRODUCTS, "the soft motions of a body")?;
-        let KernelByParts { kernel, counts, .. } =
-            kernel_by_parts(&k, &rigid.modes, &rigid.parts(), f64::INFINITY)?;
-        match Self::known(k, &kernel, (rigid, &counts), (f64::INFINITY, None), fixing)? {
+        let limit = if fixing.is_some() { f64::INFINITY } else { RESISTED };
+        let found = kernel_by_parts(&k, &rigid.modes, &rigid.parts(), limit)?;
+        let planned = Self::known(k, &found.kernel, (rigid, &found.counts), (f64::INFINITY, None), fixing)?;
+        if found.misfit().is_some() {
+            let vectors = one_column_each(&rigid.modes, &rigid.parts())?;
+            return Ok(planned.or_all_soft(NullSpaceInput { vectors, modes: Modes::Soft }));
+        }
+        match planned {
             Plan::Known(known) => Ok(Plan::Known(Known { soft: true, ..known })),
             other => Ok(other),
         }
@@ -85,7 +98,7 @@ impl GeneralizedInverse {
         let root = k.roots()?;
         let part = |(dofs, &count): (_, &usize)| FreePart { dofs: Vec::as_slice(dofs), count, tolerance };
         let parts: Vec<FreePart<'_>> = rigid.members.iter().zip(counts).map(part).collect();
-        let Verified { basis, error } = verified_by_parts(&k, vectors, &parts)?;
+        let Verified { basis, error, .. } = verified_by_parts(&k, vectors, &parts)?;
         let parts: Vec<_> = parts.iter().map(|part| (part.dofs, part.count)).collect();
         let null_space = one_column_each(&basis, &parts)?;
         let mut held = Vec::new();

@@ -2,9 +2,10 @@
 //! semidefinite, `K K+ K = K`. A few fixed vectors are tested: they find every error that affects most vectors. Forces
 //! are measured in the metric `D^-1` and displacements in D, so that no number has a unit.
 
+use crate::body::candidates::verified;
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::host::HostMultiple;
-use crate::body::null_space::{largest, verified, NullSpaceInput, Products, Verified, ROUNDING as KNOWN};
+use crate::body::null_space::{largest, NullSpaceInput, Products, Verified, ROUNDING as KNOWN};
 use crate::body::probe::{Factor, PROBE, UNLIKELY};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::random::Random;
@@ -25,7 +26,7 @@ const MISSING: f64 = 10.0 * PROBE;
 impl GeneralizedInverse {
     /// K+ of the host, after checks of K, K+ and the null space.
     pub fn of_host(k: HostMultiple, given: &NullSpaceInput, tolerance: f64) -> Result<Self> {
-        let Verified { basis: null_space, error } = verified(&k, given, tolerance)?;
+        let Verified { basis: null_space, error, misfit } = verified(&k, given, tolerance)?;
         Probe::new(&k, &null_space)?.judge()?;
         Ok(Self {
             null_space,
@@ -36,7 +37,7 @@ impl GeneralizedInverse {
             gap: None,
             softness: 1.0,
             doubts: Vec::new(),
-            misfit: None,
+            misfit,
             factor: Factor::Host(k),
             carried: None,
             near: None,

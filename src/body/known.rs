@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use crate::body::fixing::hold_as_well;
-use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Misfit, Symbolic};
-use crate::body::null_space::ROUNDING as KNOWN;
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Symbolic};
+use crate::body::misfit::Misfit;
+use crate::body::null_space::{NullSpaceInput, ROUNDING as KNOWN};
 use crate::body::probe::{probe, Factor};
 use crate::body::spectrum::Doubt;
 use crate::error::Result;
@@ -25,22 +26,25 @@ pub struct Known {
     pub(super) symbolic: Option<Arc<Symbolic>>,
     /// The resistance to the null space that may be rounding of the entries.
     pub(super) doubt: Option<Doubt>,
-    /// The search to fall back to if a null vector may be missing.
+    /// Coordinates or candidates: how many of them fit.
+    pub(super) misfit: Option<Misfit>,
+    /// What follows if a null vector may be missing.
     pub(super) retry: Option<Retry>,
 }
 
-/// How to search the null space in K if K has more null vectors than the rigid motions that fit.
-pub(super) struct Retry {
-    pub misfit: Option<Misfit>,
-    pub tolerance: f64,
-    pub fixing: Option<Vec<usize>>,
+/// The way to K+ if K has more null vectors than are known.
+pub(super) enum Retry {
+    /// The null space is searched in K.
+    Search { tolerance: f64, fixing: Option<Vec<usize>> },
+    /// All motions that were declared soft, also those that K resists like any other, get a column.
+    AllSoft(NullSpaceInput),
 }
 
 impl Known {
     /// `given`: the host gave the fixing dofs.
     pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
-        let (soft, rigid, symbolic, doubt, retry) = (false, None, None, None, None);
-        Self { k, null_space, error, fixing, given, soft, rigid, symbolic, doubt, retry }
+        let (soft, rigid, symbolic, doubt, misfit, retry) = (false, None, None, None, None, None);
+        Self { k, null_space, error, fixing, given, soft, rigid, symbolic, doubt, misfit, retry }
     }
 
     /// Takes over dofs chosen for other values, unless they hold this body much worse than its own dofs. Returns whether
@@ -67,9 +71,8 @@ impl Known {
     }
 
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or has further null vectors. For
-    /// soft motions it holds other dofs, or more, if K requires them.
-    pub fn execute(mut self) -> Result<Factorised> {
-        let most = self.most_motions();
+    /// soft motions it holds other dofs, or more, but not more than `most`, if K requires them.
+    pub fn execute(mut self, most: usize) -> Result<Factorised> {
         let (symbolic, factor, mut further) = self.factorised(most)?;
         let (mut symbolic, mut inverse) = (symbolic, self.made(factor)?);
         if let Some(better) = self.better(&inverse)? {
@@ -79,6 +82,11 @@ impl Known {
             further += 1 + more;
         }
         Ok(Factorised { inverse, symbolic, further_analyses: further, factorisations: 1 + further })
+    }
+
+    /// The motions of which K holds some.
+    pub(super) fn held(&self) -> Option<Misfit> {
+        self.misfit.filter(|misfit| misfit.fit < misfit.of)
     }
 
     fn made(&self, factor: Cholesky) -> Result<GeneralizedInverse> {
@@ -93,7 +101,7 @@ impl Known {
             gap: None,
             softness,
             doubts: self.doubt.into_iter().collect(),
-            misfit: None,
+            misfit: self.held(),
             factor,
             carried: None,
             near: None,

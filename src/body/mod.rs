@@ -5,6 +5,7 @@ mod alike;
 mod assembled;
 mod borrowed;
 mod boundary;
+mod candidates;
 mod carried;
 mod digits;
 mod fixing;
@@ -17,6 +18,7 @@ mod host_probe;
 mod in_order;
 mod known;
 mod last;
+mod misfit;
 mod null_space;
 mod part;
 mod plan;
@@ -37,9 +39,10 @@ pub use assembled::Assembled;
 pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};
 pub use digits::Digits;
-pub use generalized_inverse::{Factorised, GeneralizedInverse, Layout, Misfit, Symbolic};
+pub use generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
 pub use given::Stiffness;
 pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER};
+pub use misfit::Misfit;
 pub use null_space::{Modes, NullSpaceInput};
 pub use plan::Plan;
 pub use rigid_modes::Coordinates;
@@ -68,8 +71,8 @@ pub struct Body {
     pub null_space: Option<NullSpaceInput>,
     /// Positions of the dofs: candidates for the null space if none is given.
     pub coordinates: Option<Coordinates>,
-    /// The rigid motions of the coordinates are soft motions, not candidates.
-    pub soft_coordinates: bool,
+    /// The meaning of the rigid motions of the coordinates.
+    pub coordinate_modes: Modes,
     /// Dofs held in `K_p+`; chosen by the library if not given.
     pub fixing: Option<Vec<usize>>,
     /// `f_p`, length n, force; zero until given.
@@ -88,7 +91,7 @@ impl Body {
     pub fn has_soft_motions(&self) -> bool {
         match &self.null_space {
             Some(given) => given.modes == Modes::Soft,
-            None => self.coordinates.is_some() && self.soft_coordinates,
+            None => self.coordinates.is_some() && self.coordinate_modes == Modes::Soft,
         }
     }
 

@@ -1,20 +1,21 @@
-//! The null space `R_p` of a stiffness matrix: given and verified, or selected from candidates.
+//! The null space `R_p` of a stiffness matrix, verified.
 //! All tests use `A = D^-1/2 K D^-1/2`, D = diag K: they have no unit, and supports given as 1e30 on the
 //! diagonal count as supports. K is scaled to a largest diagonal entry in [1, 2); a dof without any
 //! stiffness has `D_ii = 1`.
 
+use crate::body::misfit::Misfit;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::dense::spectrum::right_singular;
-use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
+use crate::linalg::vector::{norm_max, ratio, weighted_norm};
 use crate::linalg::{Matrix, Multiple, Symmetric};
-use crate::platform::memory::{reserved, zeros};
+use crate::platform::memory::zeros;
 
-/// The meaning of the vectors given by the host.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The meaning of the vectors given by the host, or of the rigid motions of its coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Modes {
     /// They span the null space.
     Exact,
     /// The null space lies in their span.
+    #[default]
     Candidates,
     /// Motions of small stiffness, which need not be exact; they determine the dofs held.
     Soft,
@@ -51,16 +52,12 @@ impl NullSpaceInput {
 }
 
 /// Columns are dependent if less than this part of their length is left after orthogonalisation.
-const DEPENDENT: f64 = 1e-10;
-/// A candidate motion belongs to the null space if `|D^-1 K v|` does not exceed this part of `|v|`.
-pub(super) const CANDIDATE: f64 = 1e-11;
+pub(super) const DEPENDENT: f64 = 1e-10;
 /// Bound of `|A z|` of a unit vector z that is 0 up to rounding, even if its terms are not larger: z of dofs without
 /// stiffness.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Ratio of the largest to the mean error of a null vector.
 const PEAK: f64 = 8.0;
-/// Entries that cancelled to this part of their terms are zero (supports of 1e30 would multiply them).
-const CANCELLED: f64 = 1e-12;
 
 /// Squares of larger numbers overflow. In the metric of its diagonal no entry of a semidefinite matrix exceeds 1.
 const LARGEST: f64 = 1e150;
@@ -92,25 +89,8 @@ pub struct Verified {
     /// `R'DR = I`
     pub basis: Matrix,
     pub error: f64,
-}
-
-/// Basis of the null space with `R'DR = I`; all dofs form one part.
-pub fn verified<K: Products>(k: &K, input: &NullSpaceInput, tolerance: f64) -> Result<Verified> {
-    let dofs: Vec<usize> = (0..input.vectors.rows).collect();
-    let exact = |vectors: &Matrix| {
-        verified_by_parts(k, vectors, &[FreePart { dofs: &dofs, count: vectors.cols, tolerance }])
-    };
-    match input.modes {
-        Modes::Exact => exact(&input.vectors),
-        Modes::Candidates => {
-            let found = kernel_by_parts(k, &input.vectors, &[(&dofs, input.vectors.cols)], CANDIDATE)?;
-            exact(&found.kernel.columns(0..found.counts[0]))
-        }
-        Modes::Soft => {
-            let part = FreePart { dofs: &dofs, count: input.vectors.cols, tolerance: 0.0 };
-            Ok(Verified { basis: orthonormal_by_parts(k, &input.vectors, &[part])?, error: ROUNDING })
-        }
-    }
+    /// Candidates that K resists.
+    pub misfit: Option<Misfit>,
 }
 
 /// Dofs without coupling stiffness to the others.
@@ -146,7 +126,7 @@ pub fn verified_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreePart
             error = error.max(PEAK * found.min(left));
         }
     }
-    Ok(Verified { basis, error })
+    Ok(Verified { basis, error, misfit: None })
 }
 
 /// A basis of the span with `R'DR = I`, part by part.
@@ -177,80 +157,6 @@ pub fn one_column_each(vectors: &Matrix, parts: &[(&[usize], usize)]) -> Result<
         }
     }
     Ok(all)
-}
-
-/// The null space within candidates.
-pub struct KernelByParts {
-    /// Motions j of all parts in column j.
-    pub kernel: Matrix,
-    /// Dimension of the null space of every part.
-    pub counts: Vec<usize>,
-    /// Dimension of the span of the candidates of all parts.
-    pub candidates: usize,
-    /// The least `|D^-1 K v|` of a unit vector v among the other candidates.
-    pub next: f64,
-}
-
-/// The part of the span of the candidates with `|D^-1 K v| <= limit |v|`, part by part: from the singular values of `D^-1 K Q`,
-/// Q an orthonormal basis of the span. `parts`: dofs and number of candidates, which are in the first columns.
-pub fn kernel_by_parts<K: Products>(
-    k: &K,
-    candidates: &Matrix,
-    parts: &[(&[usize], usize)],
-    limit: f64,
-) -> Result<KernelByParts> {
-    let mut spans = reserved(parts.len(), "a null space")?;
-    let mut all = Matrix::zeros(candidates.rows, candidates.cols)?;
-    for &(dofs, count) in parts {
-        let own = Matrix::from_fn(dofs.len(), count, |at, j| candidates.get(dofs[at], j))?;
-        let own = own.orthonormalised(DEPENDENT);
-        (0..own.cols).for_each(|j| own.col(j).iter().zip(dofs).for_each(|(v, &i)| all.set(i, j, *v)));
-        spans.push(own);
-    }
-    let (image, _) = k.mul_columns(&all)?;
-    all.data.fill(0.0);
-    let mut found = KernelByParts { kernel: all, counts: Vec::new(), candidates: 0, next: f64::INFINITY };
-    for (&(dofs, _), span) in parts.iter().zip(&spans) {
-        let of = |at: usize, j: usize| image.get(dofs[at], j) / k.metric(dofs[at], 1.0);
-        let resisted = Matrix::from_fn(dofs.len(), span.cols, of)?;
-        found.candidates += span.cols;
-        found.counts.push(0);
-        if span.cols == 0 || dofs.len() < span.cols {
-            continue;
-        }
-        refuse_overflow(&resisted.data, |at| dofs[at % dofs.len()])?;
-        let (values, vectors) = right_singular(&resisted)?;
-        for (j, value) in values.iter().enumerate() {
-            if *value > limit {
-                found.next = found.next.min(*value);
-                continue;
-            }
-            let motion = combined(span, vectors.col(j))?;
-            let count = found.counts.last_mut().filter(|_| norm(&motion) > 0.0);
-            count.into_iter().for_each(|count| {
-                dofs.iter().zip(&motion).for_each(|(&i, v)| found.kernel.set(i, *count, *v));
-                *count += 1;
-            });
-        }
-    }
-    Ok(found)
-}
-
-/// `Q x`, with zeros for entries that are rounding.
-fn combined(span: &Matrix, x: &[f64]) -> Result<Vec<f64>> {
-    let n = span.rows;
-    let (mut motion, mut terms) = (zeros(n, "a null space")?, zeros(n, "a null space")?);
-    span.mul_add(1.0, x, &mut motion);
-    for (q, share) in x.iter().enumerate() {
-        terms.iter_mut().zip(span.col(q)).for_each(|(t, v)| *t += share.abs() * v.abs());
-    }
-    let floor = CANCELLED * norm_max(&motion);
-    for (v, t) in motion.iter_mut().zip(&terms) {
-        if v.abs() <= CANCELLED * t || v.abs() <= floor {
-            *v = 0.0;
-        }
-    }
-    Ok(motion)
 }
 
 /// Position of the largest `w_i x_i^2`.
@@ -303,7 +209,7 @@ mod tests {
     }
 
     fn verified(k: &Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
-        super::verified(k, input, tolerance).map(|found| found.basis)
+        crate::body::candidates::verified(k, input, tolerance).map(|found| found.basis)
     }
 
     fn translation(n: usize, modes: Modes) -> NullSpaceInput {

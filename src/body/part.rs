@@ -28,8 +28,20 @@ pub struct Soft {
 }
 
 impl End {
-    /// `ritz`: the softest motions measured over the part, empty if the eigenvalues at t suffice. `last`: the dofs t.
-    pub fn decided(self, digits: Option<Digits>, last: &[usize], ritz: &Ritz) -> Result<Soft> {
+    /// `ritz`: the softest motions measured over the part, empty if the eigenvalues at t suffice. `last`: the dofs t. The
+    /// number of `few` digits is only reported, if K holds the part.
+    pub fn decided(
+        self,
+        digits: Option<Digits>,
+        few: Option<Digits>,
+        last: &[usize],
+        mut ritz: Ritz,
+    ) -> Result<Soft> {
+        let doubt = ritz.doubt(few, ritz.explained(), false);
+        if digits.is_none() {
+            ritz.take_as_exact();
+        }
+        let ritz = &ritz;
         let measured = self.vectors.columns(0..ritz.values.len());
         let mut soft = self.null_vectors(digits, &measured, last, ritz)?;
         let free = soft.vectors.cols;
@@ -39,6 +51,7 @@ impl End {
             let q = free + soft.weak;
             (soft.vectors, soft.gap) = (ritz.turned(&measured, q)?, ritz.values[q] / ritz.values[q - 1]);
         }
+        soft.doubt = soft.doubt.or(doubt.filter(|_| soft.vectors.cols == 0));
         Ok(soft)
     }
 

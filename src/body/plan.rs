@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use crate::body::candidates::{kernel_by_parts, verified};
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
 use crate::body::known::{Known, Retry};
-use crate::body::null_space::{
-    one_column_each, verified, Modes, NullSpaceInput, Verified, ROUNDING as KNOWN,
-};
+use crate::body::misfit::{Misfit, RESISTED};
+use crate::body::null_space::{one_column_each, Modes, NullSpaceInput, Verified, ROUNDING as KNOWN};
+use crate::body::probe::PROBE;
 use crate::body::rigid_modes::RigidModes;
 use crate::body::search::Search;
 use crate::error::{Error, Kind, Result};
@@ -36,14 +37,33 @@ impl GeneralizedInverse {
     ) -> Result<Plan> {
         let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
         let _room = headroom(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
+        if input.modes == Modes::Soft && fixing.is_none() {
+            let all: Vec<usize> = (0..k.order()).collect();
+            let found = kernel_by_parts(&k, &input.vectors, &[(&all, input.vectors.cols)], RESISTED)?;
+            if found.misfit().is_some() {
+                let vectors = found.kernel.columns(0..found.counts[0]);
+                let kept = NullSpaceInput { vectors, modes: Modes::Soft };
+                return Ok(Self::plan_all(k, &kept, tolerance, None)?.or_all_soft(input.clone()));
+            }
+        }
+        Self::plan_all(k, input, tolerance, fixing)
+    }
+
+    /// As `plan_with`; soft motions that K resists like any other are not left out.
+    fn plan_all(
+        k: Multiple,
+        input: &NullSpaceInput,
+        tolerance: f64,
+        fixing: Option<&[usize]>,
+    ) -> Result<Plan> {
         let (root, given) = (k.roots()?, fixing.is_some());
-        let Verified { basis: null_space, error } = verified(&k, input, tolerance)?;
+        let Verified { basis: null_space, error, misfit } = verified(&k, input, tolerance)?;
         let fixing = match fixing {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root)?,
         };
         let soft = input.modes == Modes::Soft;
-        Ok(Plan::Known(Known { soft, ..Known::of(k, null_space, error, fixing, given) }))
+        Ok(Plan::Known(Known { soft, misfit, ..Known::of(k, null_space, error, fixing, given) }))
     }
 
     /// The plan if nothing is known about the null space.
@@ -57,7 +77,18 @@ impl Plan {
     pub fn or_search(self, tolerance: f64) -> Self {
         match self {
             Self::Known(known) if known.retry.is_none() => {
-                Self::Known(Known { retry: Some(Retry { misfit: None, tolerance, fixing: None }), ..known })
+                Self::Known(Known { retry: Some(Retry::Search { tolerance, fixing: None }), ..known })
+            }
+            planned => planned,
+        }
+    }
+
+    /// Takes all these motions as soft if K turns out to need them. Without soft motions left, K+ is that of any body.
+    pub(super) fn or_all_soft(self, all: NullSpaceInput) -> Self {
+        match self {
+            Self::Known(known) => {
+                let soft = known.null_space.cols > 0;
+                Self::Known(Known { soft, retry: Some(Retry::AllSoft(all)), ..known })
             }
             planned => planned,
         }
@@ -125,14 +156,22 @@ impl Plan {
     /// unless the null space of `other` was found in K or includes further motions.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
         match self {
-            Self::Known(Known { k, null_space, error, doubt, soft, rigid, .. })
-                if other.gap.is_none() && other.own_motions() == null_space.cols =>
-            {
+            Self::Known(known) if other.gap.is_none() && other.own_motions() == known.null_space.cols => {
+                let misfit = known.held();
+                let Known { k, null_space, error, doubt, soft, rigid, .. } = known;
                 let doubts = doubt.into_iter().collect();
                 let (rounding, stiffness) = (KNOWN, Vec::new());
                 let (carried, other) = (None, other.clone());
-                let own =
-                    GeneralizedInverse { null_space, stiffness, rounding, error, doubts, carried, ..other };
+                let own = GeneralizedInverse {
+                    null_space,
+                    stiffness,
+                    rounding,
+                    error,
+                    doubts,
+                    misfit,
+                    carried,
+                    ..other
+                };
                 let mut own = own.judged_by(&k, soft, rigid.as_ref())?;
                 own.find_near(&k)?;
                 Ok(own)
@@ -150,10 +189,27 @@ impl Plan {
         }
         match self {
             Self::Known(mut known) => match known.retry.take() {
-                None => known.execute(),
+                None => {
+                    let held = known.held().and_then(|misfit| misfit.held());
+                    let most = known.most_motions();
+                    known.execute(most).map_err(|error| {
+                        match held.filter(|_| error.kind == Kind::NullSpace) {
+                            Some(held) => Error { what: format!("{}; {held}", error.what), ..error },
+                            None => error,
+                        }
+                    })
+                }
                 Some(retry) => {
-                    let k = known.k.clone();
-                    known.execute().or_else(|error| sought(k, retry, error))
+                    let (k, misfit, limit) = (known.k.clone(), known.misfit, retry.least_softness());
+                    let most = match retry {
+                        Retry::Search { .. } => known.most_motions(),
+                        Retry::AllSoft(_) => known.null_space.cols,
+                    };
+                    match known.execute(most) {
+                        Ok(made) if made.inverse.softness >= limit => Ok(made),
+                        Err(error) if !retry.follows(&error, misfit) => Err(error),
+                        _ => retry.execute(k, misfit),
+                    }
                 }
             },
             Self::Search(search) => search.execute(),
@@ -161,18 +217,43 @@ impl Plan {
     }
 }
 
-/// Searches the null space in K after `error`.
-fn sought(k: Multiple, retry: Retry, error: Error) -> Result<Factorised> {
-    if !matches!(error.kind, Kind::NullSpace | Kind::Indefinite | Kind::Internal) {
-        return Err(error);
+impl Retry {
+    /// A K+ that is softer than this needs the motions left out.
+    fn least_softness(&self) -> f64 {
+        match self {
+            Self::Search { .. } => 0.0,
+            Self::AllSoft(_) => PROBE,
+        }
     }
-    let Retry { misfit, tolerance, fixing } = retry;
-    let search = Search::new(k, tolerance, fixing.as_deref())?;
-    let search = match misfit {
-        Some(misfit) => search.instead_of(misfit),
-        None => search,
-    };
-    let mut made = search.execute()?;
-    made.factorisations += 1;
-    Ok(made)
+
+    /// Whether another way may succeed after `error`. If all rigid motions fit, K is not the K of other coordinates.
+    fn follows(&self, error: &Error, misfit: Option<Misfit>) -> bool {
+        match error.kind {
+            Kind::NullSpace => true,
+            Kind::Indefinite | Kind::Internal => misfit.is_none_or(|misfit| misfit.fit < misfit.of),
+            _ => false,
+        }
+    }
+
+    fn execute(self, k: Multiple, misfit: Option<Misfit>) -> Result<Factorised> {
+        let mut made = match self {
+            Self::Search { tolerance, fixing } => {
+                let search = Search::new(k, tolerance, fixing.as_deref())?;
+                match misfit {
+                    Some(misfit) => search.instead_of(misfit),
+                    None => search,
+                }
+                .execute()?
+            }
+            Self::AllSoft(NullSpaceInput { vectors, modes }) => {
+                let all: Vec<usize> = (0..k.order()).collect();
+                let found = kernel_by_parts(&k, &vectors, &[(&all, vectors.cols)], f64::INFINITY)?;
+                let vectors = found.kernel.columns(0..found.counts[0]);
+                let input = NullSpaceInput { vectors, modes };
+                GeneralizedInverse::plan_all(k, &input, f64::INFINITY, None)?.execute()?
+            }
+        };
+        made.factorisations += 1;
+        Ok(made)
+    }
 }

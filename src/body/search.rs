@@ -7,17 +7,18 @@
 
 use std::sync::Arc;
 
-use crate::body::digits::Digits;
+use crate::body::digits::{Digits, FEWEST};
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Misfit, Symbolic};
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
 use crate::body::last::{between_parts, spread, supported};
+use crate::body::misfit::Misfit;
 use crate::body::null_space::{
     largest, one_column_each, refuse_overflow, verified_by_parts, FreePart, Verified,
 };
 use crate::body::part::{End, Soft};
 use crate::body::probe::{known_to, probe, Factor, MOST_ROUNDING, SINGULAR};
 use crate::body::soft::{are_resisted, known_to_entries, soft_motions};
-use crate::body::spectrum::{cut, may_be_weak, measured, to_measure};
+use crate::body::spectrum::{cut, may_be_weak, measured, to_measure, Ritz};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::Trailing;
 use crate::linalg::dense::spectrum::symmetric_eigen;
@@ -30,8 +31,6 @@ use crate::platform::memory::{copied, headroom, reserved, PRODUCTS};
 const LAST: usize = 24;
 /// Limit of this number.
 const MOST: usize = 400;
-/// Rounding of a pivot that cancels, relative to rounding of a single entry.
-const PIVOT: f64 = 10.0;
 /// Bytes of labels, lists and vectors, per dof.
 const PER_DOF: usize = 256;
 
@@ -48,6 +47,8 @@ pub struct Search {
     count: usize,
     /// Precision of the entries of K, if less than double precision.
     digits: Option<Digits>,
+    /// Otherwise, digits so few that the entries may be round numbers.
+    few: Option<Digits>,
     /// Coordinates that did not fit K.
     misfit: Option<Misfit>,
     /// The input of the analysis besides the pattern of K.
@@ -89,7 +90,9 @@ impl Search {
         }
         let left_out = copied(&between, "the connected parts of a body")?;
         let layout = Arc::new(Layout::Last { dofs: last.clone(), between: left_out });
-        let digits = Digits::of(&k.matrix)?;
+        let digits = Digits::of_least(&k.matrix, Digits::TOLD)?;
+        let few = digits.filter(|digits| digits.are_few());
+        let digits = digits.filter(|digits| !digits.are_few());
         Ok(Self {
             k,
             tolerance,
@@ -99,6 +102,7 @@ impl Search {
             between,
             count,
             digits,
+            few,
             misfit: None,
             layout,
             symbolic: None,
@@ -171,7 +175,9 @@ impl Search {
         if let Some(breakdown) = below(SINGULAR) {
             return self.missed_or_indefinite(breakdown);
         }
-        if let Some(Breakdown { dof, .. }) = below(self.rounded_pivot()).filter(|_| 2 * self.count <= MOST) {
+        if let Some(Breakdown { dof, .. }) =
+            below(self.digits.map_or(SINGULAR, Digits::pivot)).filter(|_| 2 * self.count <= MOST)
+        {
             return Ok(Attempt::Missed(dof));
         }
         drop(supported);
@@ -184,17 +190,14 @@ impl Search {
         let vectors = self.extended(&factor, soft.iter().map(|part| part.vectors.clone()))?;
         match self.inverse(factor, &soft, vectors) {
             Err(Error { kind: Kind::NullSpace, place, .. })
-                if place.dof.is_some_and(|dof| self.may_take(dof)) =>
+                if place
+                    .dof
+                    .is_some_and(|dof| self.last.iter().all(|last| last.binary_search(&dof).is_err())) =>
             {
                 Ok(Attempt::Missed(place.dof.unwrap_or(0)))
             }
             done => done.map(|inverse| Attempt::Done(Box::new(inverse))),
         }
-    }
-
-    /// Whether t can be extended by this dof.
-    fn may_take(&self, dof: usize) -> bool {
-        self.last.iter().all(|last| last.binary_search(&dof).is_err())
     }
 
     fn end(&self, factor: &Cholesky, last: &[usize]) -> Result<End> {
@@ -213,7 +216,7 @@ impl Search {
     fn soft_as_written(&mut self, factor: &Cholesky) -> Result<Vec<Soft>> {
         match self.soft(factor) {
             Err(Error { kind: Kind::Indefinite, .. }) if self.digits.is_none() => {
-                self.digits = Digits::of_rounded(&self.k.matrix);
+                self.digits = Digits::of_rounded(&self.k.matrix, FEWEST);
                 self.soft(factor)
             }
             found => found,
@@ -222,7 +225,7 @@ impl Search {
 
     /// The null space of every part at t: from the eigenvalues at t if these decide it, otherwise from the softest
     /// motions measured over the whole part.
-    fn soft(&self, factor: &Cholesky) -> Result<Vec<Soft>> {
+    fn soft(&mut self, factor: &Cholesky) -> Result<Vec<Soft>> {
         const WHAT: &str = "the null space of a body";
         let (mut ends, mut candidates) = (reserved(self.last.len(), WHAT)?, reserved(self.last.len(), WHAT)?);
         for last in &self.last {
@@ -233,20 +236,23 @@ impl Search {
         let part = |(members, q): (_, &usize)| (Vec::as_slice(members), *q);
         let parts: Vec<_> = self.members.iter().zip(&candidates).map(part).collect();
         let first = ends.iter().zip(&candidates).map(|(end, q): (&End, _)| end.vectors.columns(0..*q));
-        let ritz = measured(&self.k, self.digits, &parts, self.extended(factor, first)?)?;
+        let ritz = measured(&self.k, self.digits.or(self.few), &parts, self.extended(factor, first)?)?;
+        if ritz.iter().all(Ritz::is_exact) {
+            (self.digits, self.few) = (None, None);
+        }
         let parts = ends.into_iter().zip(&self.last).zip(ritz);
-        parts.map(|((end, last), ritz)| end.decided(self.digits, last, &ritz)).collect()
+        parts.map(|((end, last), ritz)| end.decided(self.digits, self.few, last, ritz)).collect()
     }
 
     /// Number of motions to be measured over the whole part.
     fn candidates(&self, end: &End, last: &[usize]) -> Result<usize> {
         let (values, cut) = (&end.values, cut(&end.values));
         if self.digits.is_some() || cut.is_none() {
-            return Ok(to_measure(values));
+            return Ok(to_measure(values, self.digits.or(self.few)));
         }
         self.definite(values[0] / values[values.len() - 1].abs().max(1.0), end, last)?;
         let weak = cut.is_some_and(|(dimension, _)| may_be_weak(values, dimension));
-        Ok(if weak { to_measure(values) } else { 0 })
+        Ok(if weak || self.few.is_some() { to_measure(values, self.few) } else { 0 })
     }
 
     /// The error if the stiffness of the softest motion of a part is negative beyond rounding.
@@ -384,15 +390,10 @@ impl Search {
         let Some(error) = (Breakdown { dof, relative_pivot }).refused() else {
             return Ok(Attempt::Missed(dof));
         };
-        self.digits = self.digits.or_else(|| Digits::of_rounded(&self.k.matrix));
-        if relative_pivot < -self.rounded_pivot() {
+        self.digits = self.digits.or_else(|| Digits::of_rounded(&self.k.matrix, FEWEST));
+        if relative_pivot < -self.digits.map_or(SINGULAR, Digits::pivot) {
             return Err(error);
         }
         Ok(Attempt::Missed(dof))
-    }
-
-    /// The relative pivot that rounding of the entries may leave in place of 0: then the dof must be in t.
-    fn rounded_pivot(&self) -> f64 {
-        self.digits.map_or(SINGULAR, |digits| PIVOT * digits.relative())
     }
 }

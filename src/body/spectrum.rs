@@ -16,14 +16,13 @@ use crate::platform::memory::reserved;
 const SOFT: f64 = 1e-11;
 /// Motions softer than this, and the next one, are measured over the whole part if necessary.
 const MEASURED: f64 = 1e-3;
-/// Least ratio between the stiffest motion of the null space and the softest of the others.
+/// Least ratio between the stiffest motion of the null space and the softest of the others, and between a certain support and
+/// the rounding of the entries.
 pub const GAP: f64 = 1e3;
 /// Eigenvalues below this part of the largest are rounding.
 const ROUNDING: f64 = 1e-14;
 /// Bound of rounding in standard deviations.
 const DEVIATIONS: f64 = 5.0;
-/// A support is certain if rounding of the entries is less than this part of it.
-const UNKNOWN: f64 = 1e-3;
 /// If rounding is below this part of the softest other motion, its effect on forces is within the certificate's
 /// tolerance.
 const TRIFLE: f64 = 1e-6;
@@ -117,10 +116,11 @@ pub fn may_be_weak(values: &[f64], dimension: usize) -> bool {
     values.get(dimension).is_some_and(|value| *value < MEASURED * values[values.len() - 1])
 }
 
-/// How many of the softest motions at t are to be measured; 0 if none is soft.
-pub fn to_measure(values: &[f64]) -> usize {
-    let stiffest = values[values.len() - 1];
-    match values.partition_point(|value| *value < MEASURED * stiffest) {
+/// How many of the softest motions at t are to be measured; 0 if none is soft, or so soft that rounding of its digits may
+/// explain it.
+pub fn to_measure(values: &[f64], digits: Option<Digits>) -> usize {
+    let soft = digits.map_or(MEASURED, |digits| MEASURED.max(digits.relative()));
+    match values.partition_point(|value| *value < soft * values[values.len() - 1]) {
         0 => 0,
         soft => (soft + 1).min(values.len()),
     }
@@ -178,9 +178,6 @@ pub fn symmetric(q: usize, entry: impl Fn(usize, usize) -> f64) -> Result<Matrix
 /// T with `T'M T = I` and `T'A T` diagonal, ascending.
 fn turned(m: &Matrix, a: &Matrix) -> Result<Matrix> {
     let q = m.rows;
-    if q == 0 {
-        return Ok(Matrix::default());
-    }
     let (sizes, mut unit) = symmetric_eigen(m)?;
     for (j, size) in sizes.iter().enumerate() {
         unit.col_mut(j).iter_mut().for_each(|v| *v /= size.sqrt());
@@ -194,13 +191,31 @@ fn turned(m: &Matrix, a: &Matrix) -> Result<Matrix> {
 }
 
 impl Ritz {
+    /// Whether K shows that its entries are exact, whatever digits they have: it has motions that it resists by no more than
+    /// rounding of the products, and none between these and the rounding of the entries.
+    pub fn is_exact(&self) -> bool {
+        let below =
+            |bounds: &[f64]| self.values.iter().zip(bounds).take_while(|(v, b)| v.abs() <= **b).count();
+        let exact = below(&self.products);
+        exact > 0 && below(&self.noise) == exact
+    }
+
+    /// Number of motions whose resistance may be rounding.
+    pub fn explained(&self) -> usize {
+        self.values.iter().zip(&self.noise).take_while(|(value, noise)| value <= noise).count()
+    }
+
+    pub fn take_as_exact(&mut self) {
+        self.noise.clone_from(&self.products);
+    }
+
     /// Motions that rounding explains are free if a gap separates them from the next motion.
     pub fn judged(&self, digits: Option<Digits>) -> MotionVerdict {
         let (values, noise) = (&self.values, &self.noise);
         if values[0] < -noise[0].max(NEGATIVE) {
             return MotionVerdict::Indefinite;
         }
-        let explained = (0..values.len()).take_while(|&k| values[k] <= noise[k]).count();
+        let explained = self.explained();
         let most = (0..explained).map(|k| noise[k].max(values[k].abs())).fold(0.0, f64::max);
         match values.get(explained) {
             None => return MotionVerdict::Free { dimension: explained, gap: ROUNDING.recip() },
@@ -219,7 +234,7 @@ impl Ritz {
         if values[0] <= self.products[0] {
             return MotionVerdict::Unclear;
         }
-        let doubtful = (0..values.len()).take_while(|&k| noise[k] >= UNKNOWN * values[k]).count();
+        let doubtful = (0..values.len()).take_while(|&k| GAP * noise[k] >= values[k]).count();
         MotionVerdict::Held { doubtful, gap: values[0] / noise[0] }
     }
 

@@ -59,7 +59,7 @@ pub fn touched(host: &Model, joints: &[Joint]) -> Result<Vec<bool>> {
 
 /// A body that is its only part: its matrix and functions are shared, not copied.
 fn whole(given: &GivenBody) -> Body {
-    let Body { order, stiffness, operator, null_space, coordinates, soft_coordinates, fixing, .. } =
+    let Body { order, stiffness, operator, null_space, coordinates, coordinate_modes, fixing, .. } =
         &given.body;
     Body {
         order: *order,
@@ -67,7 +67,7 @@ fn whole(given: &GivenBody) -> Body {
         operator: operator.clone(),
         null_space: null_space.clone(),
         coordinates: coordinates.clone(),
-        soft_coordinates: *soft_coordinates,
+        coordinate_modes: *coordinate_modes,
         fixing: fixing.clone(),
         ..Body::default()
     }
@@ -107,13 +107,13 @@ impl Split<'_> {
 
     /// The body with these unknowns alone: coordinates and dofs held are those of the body.
     fn part_of(&self, dofs: &[u32], stiffness: Arc<Symmetric>) -> Result<Body> {
-        let Body { coordinates, soft_coordinates, fixing, .. } = &self.given.body;
+        let Body { coordinates, coordinate_modes, fixing, .. } = &self.given.body;
         let own = |dof: &usize| dofs.binary_search(&(*dof as u32)).ok();
         Ok(Body {
             order: dofs.len(),
             stiffness: Some(stiffness),
             coordinates: coordinates.as_ref().map(|all| all.of(dofs)).transpose()?,
-            soft_coordinates: *soft_coordinates,
+            coordinate_modes: *coordinate_modes,
             fixing: fixing.as_ref().map(|fixing| fixing.iter().filter_map(own).collect()),
             ..Body::default()
         })

@@ -115,11 +115,10 @@ impl Model {
         Ok(())
     }
 
-    /// Whether the rigid motions of the coordinates, given before or later, are soft motions; otherwise they are
-    /// candidates.
-    pub fn set_soft_coordinates(&mut self, body: usize, soft: bool) -> Result<()> {
-        let unchanged = self.given(body)?.body.soft_coordinates == soft;
-        self.change(body, Change::unless(unchanged, Change::Motions))?.body.soft_coordinates = soft;
+    /// What the rigid motions of the coordinates, given before or later, are; without this call candidates.
+    pub fn set_coordinate_modes(&mut self, body: usize, modes: Modes) -> Result<()> {
+        let unchanged = self.given(body)?.body.coordinate_modes == modes;
+        self.change(body, Change::unless(unchanged, Change::Motions))?.body.coordinate_modes = modes;
         Ok(())
     }
 

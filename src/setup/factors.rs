@@ -294,10 +294,13 @@ impl Prepared {
         for &p in bodies {
             let number = model.name(p) as i64 + model.settings.index_base;
             let Some(kplus) = self.bodies[p].inverse.as_ref().map(|of| &of.kplus) else { continue };
-            if let Some(misfit) = kplus.misfit {
+            if let Some(misfit) = kplus.misfit.filter(|_| kplus.gap.is_some()) {
+                let warning = if misfit.fit < misfit.of { "warning: " } else { "" };
                 let text =
-                    || format!("warning: body {number}: {misfit}; the library searched its null space in K");
+                    || format!("{warning}body {number}: {misfit}; the library searched its null space in K");
                 log.say(LogLevel::Result, text)?;
+            } else if let Some(held) = kplus.misfit.filter(|_| !model.is_piece(p)).and_then(|of| of.held()) {
+                log.say(LogLevel::Phase, || format!("body {number}: {held}"))?;
             }
             if kplus.is_soft() {
                 let soft = kplus.stiffness.iter().filter(|stiffness| **stiffness != 0.0);

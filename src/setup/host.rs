@@ -69,5 +69,9 @@ fn host_inverse(body: &Body, tolerance: f64) -> Result<GeneralizedInverse> {
     let coordinates = body.coordinates.as_ref().ok_or_else(missing)?;
     let vectors = coordinates.rigid_modes_of_one(|dof| k.operator.diagonal(dof) > 0.0)?;
     let candidates = NullSpaceInput { vectors, modes: Modes::Candidates };
-    GeneralizedInverse::of_host(k, &candidates, tolerance)
+    let made = GeneralizedInverse::of_host(k, &candidates, tolerance)?;
+    match made.misfit.filter(|_| body.coordinate_modes == Modes::Exact) {
+        Some(misfit) => Err(Error::new(Kind::NullSpace, misfit.to_string()).value(misfit.next)),
+        None => Ok(made),
+    }
 }

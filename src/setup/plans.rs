@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::body::{Body, GeneralizedInverse, Plan};
+use crate::body::{Body, Digits, GeneralizedInverse, Modes, Plan};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
 use crate::model::Model;
@@ -31,6 +31,10 @@ pub(super) fn of_coordinates(body: &Body, mut error: Error) -> Error {
         error.what =
             format!("the coordinates, from which the null space comes, may be wrong: {}", error.what);
     }
+    let entries = body.stiffness.as_deref().filter(|_| error.kind == Kind::Indefinite);
+    if let Some(digits) = entries.and_then(|k| Digits::of_rounded(k, Digits::TOLD)) {
+        error.what = format!("{}; the entries of K have {digits}: rounding may have made it so", error.what);
+    }
     error
 }
 
@@ -53,9 +57,9 @@ fn plan(body: &Body, tolerance: f64, is_piece: bool) -> Result<Plan> {
         return GeneralizedInverse::search(k, tolerance, fixing);
     };
     let rigid = coordinates.rigid_modes(&k.matrix)?;
-    let planned = match body.soft_coordinates {
-        true => GeneralizedInverse::plan_soft(k, &rigid, fixing)?,
-        false => GeneralizedInverse::plan_near(k, &rigid, tolerance, fixing)?,
+    let planned = match body.coordinate_modes {
+        Modes::Soft => GeneralizedInverse::plan_soft(k, &rigid, fixing)?,
+        modes => GeneralizedInverse::plan_near(k, &rigid, modes, tolerance, fixing)?,
     };
     if is_piece {
         return planned.or_search(tolerance).carrying(&rigid);

@@ -93,7 +93,11 @@ impl Problem {
             (Some(r), _) if r.modes == Modes::Candidates => Origin::Candidates,
             (Some(_), _) => Origin::Given,
             // coordinates were given that do not fit K
-            (None, _) if self.inverses(body).any(|of| of.kplus.misfit.is_some()) => Origin::Found,
+            (None, _)
+                if self.inverses(body).any(|of| of.kplus.misfit.is_some() && of.kplus.gap.is_some()) =>
+            {
+                Origin::Found
+            }
             (None, Some(_)) => Origin::Coordinates,
             (None, None) => Origin::Found,
         };

@@ -23,7 +23,7 @@ fn every_section() -> Vec<u8> {
             Some(modes) => problem.set_null_space(body, 2, 1, &[1.0, 1.0], 2, modes).unwrap(),
             None => {
                 problem.set_coordinates(body, 1, &[0, 1], &[1, 1], &[0.0, 1.0], 1).unwrap();
-                problem.set_soft_coordinates(body, true).unwrap();
+                problem.set_coordinate_modes(body, Modes::Soft).unwrap();
             }
         }
     }

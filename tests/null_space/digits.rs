@@ -83,6 +83,33 @@ fn motions_softer_than_the_rounding_of_few_digits_are_free_by_their_gap_or_told_
     }
 }
 
+/// Rounding to so few digits resists the motions, or drives them: it is never passed over in silence.
+#[test]
+fn a_stiffness_of_three_to_six_digits_is_told() {
+    for (name, block, dimension) in [("quads", quads(4), 3), ("quads", quads(6), 3), ("cube", cube(2), 6)] {
+        for turn in 0..10 {
+            let k = block.stiffness();
+            let k = Csr { val: k.val.iter().map(|v| v * (1.0 + 0.0717 * f64::from(turn))).collect(), ..k };
+            for digits in 3..=6 {
+                let k = printed(&k, digits);
+                match registered(&k).setup() {
+                    Err(error) => {
+                        assert!(error.what.contains(&format!("{digits} digits")), "{name}: {error}")
+                    }
+                    Ok(()) => {
+                        let (found, doubts, told) = set_up(&k);
+                        assert!(found == dimension || found == 0, "{name}, {digits} digits: {found}");
+                        assert!(
+                            found == dimension || !doubts.is_empty() && !told.is_empty(),
+                            "{name}, {turn}, {digits} digits: {found} in silence"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// 100 : 1
 fn strip() -> Block {
     Block { dimension: 2, elements: [200, 2, 1], size: [200.0, 2.0, 1.0], ..Block::default() }

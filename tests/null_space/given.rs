@@ -3,6 +3,10 @@
 use feti_contact::error::{Error, Kind};
 use feti_contact::solver::{Modes, Problem, SparseInput, Storage};
 
+use crate::bodies::cube;
+use crate::digits::quads;
+use crate::registered;
+
 /// A spring 1 between two unknowns, the first held by another one.
 fn spring(held: f64) -> Result<Problem, Error> {
     let mut problem = Problem::new();
@@ -40,4 +44,47 @@ fn a_candidate_that_a_weak_spring_resists_is_no_null_vector() {
         problem.set_null_space(0, 2, 1, &[1.0, 1.0], 2, Modes::Candidates).unwrap();
         assert_eq!(problem.null_space(0).unwrap().0, dimension, "{held:e}");
     }
+}
+
+/// The rotation (-y, x) about an origin at 5e6 to 1e8 edges is a translation but for its last digits.
+#[test]
+fn candidates_of_a_body_far_from_the_origin_lose_no_motion() {
+    for far in [1.0, 1e3, 5e5, 5e6, 1e8] {
+        for block in [quads(8), cube(3)] {
+            let (d, n) = (block.dimension, block.dimension * block.nodes());
+            let at = |node: usize, k: usize| far * [1.0, 0.1, 0.03][k] + block.grid(node)[k] as f64 / 8.0;
+            let mut modes: Vec<f64> =
+                (0..d).flat_map(|k| (0..n).map(move |i| f64::from(u8::from(i % d == k)))).collect();
+            let planes: &[[usize; 2]] = if d == 2 { &[[0, 1]] } else { &[[0, 1], [1, 2], [2, 0]] };
+            for &[a, b] in planes {
+                modes.extend((0..n).map(|i| match i % d {
+                    k if k == a => -at(i / d, b),
+                    k if k == b => at(i / d, a),
+                    _ => 0.0,
+                }));
+            }
+            let r = d + planes.len();
+            let mut problem = registered(&block.stiffness());
+            problem.set_null_space(0, n, r, &modes, n, Modes::Candidates).unwrap();
+            let found = problem.null_space(0).unwrap_or_else(|e| panic!("{far:e}: {e}")).0;
+            assert_eq!(found, r, "{far:e}");
+        }
+    }
+}
+
+/// Rounding of far candidates is no excuse for a spring.
+#[test]
+fn a_candidate_far_from_the_origin_that_a_spring_resists_is_no_null_vector() {
+    let block = quads(8);
+    let mut k = block.stiffness();
+    let at = k.ptr[20] + k.col[k.ptr[20]..k.ptr[21]].partition_point(|&j| j < 20);
+    k.val[at] *= 1.0 + 1e-4;
+    let n = k.rows;
+    let place = |i: usize, k: usize| 5e6 + block.grid(i / 2)[k] as f64 / 8.0;
+    let mut modes: Vec<f64> =
+        (0..2).flat_map(|k| (0..n).map(move |i| f64::from(u8::from(i % 2 == k)))).collect();
+    modes.extend((0..n).map(|i| if i % 2 == 0 { -place(i, 1) } else { place(i, 0) }));
+    let mut problem = registered(&k);
+    problem.set_null_space(0, n, 3, &modes, n, Modes::Candidates).unwrap();
+    assert_eq!(problem.null_space(0).unwrap().0, 2);
 }

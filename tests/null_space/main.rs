@@ -6,6 +6,7 @@ mod coordinates;
 mod digits;
 mod given;
 mod rows;
+mod tidy;
 
 use bodies::{bar, chain, cube, frame, held, membrane};
 use decks::{Block, Csr};
@@ -24,16 +25,22 @@ fn registered(k: &Csr) -> Problem {
 
 /// The warnings that a setup tells.
 fn warnings(problem: &mut Problem) -> Vec<String> {
+    let lines = lines(problem, LogLevel::Result);
+    lines.into_iter().filter(|line| line.contains("warning")).collect()
+}
+
+/// The lines that a setup tells, up to this level.
+fn lines(problem: &mut Problem, level: LogLevel) -> Vec<String> {
     let lines = Arc::new(Mutex::new(Vec::new()));
     let book = Arc::clone(&lines);
     let listener = move |_, text: &str| {
         book.lock().unwrap().push(text.to_owned());
         0
     };
-    problem.on_log(Some((LogLevel::Result, Box::new(listener))));
+    problem.on_log(Some((level, Box::new(listener))));
     problem.setup().unwrap_or_else(|e| panic!("{e}"));
     let lines = lines.lock().unwrap();
-    lines.iter().filter(|line| line.contains("warning")).cloned().collect()
+    lines.clone()
 }
 
 /// What the library found.

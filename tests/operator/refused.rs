@@ -108,11 +108,11 @@ fn soft_motions_of_a_body_whose_inverse_is_the_hosts_are_refused() {
     let host = hosts_of(&deck, Form::Held).swap_remove(BODY);
     problem.set_operator(BODY, &host.diagonal(), host.functions(false)).unwrap();
     problem.set_coordinates(BODY, 3, &body.node, &body.direction, &body.coordinates.concat(), 3).unwrap();
-    problem.set_soft_coordinates(BODY, true).unwrap();
+    problem.set_coordinate_modes(BODY, Modes::Soft).unwrap();
     let error = problem.setup().unwrap_err();
     assert_eq!(error.place.body, Some(BODY));
     assert_says(&error, Kind::Unsupported, "soft motions were given");
-    problem.set_soft_coordinates(BODY, false).unwrap();
+    problem.set_coordinate_modes(BODY, Modes::Candidates).unwrap();
     problem.setup().unwrap();
 }
 

@@ -14,7 +14,8 @@ use crate::{
 fn placed(deck: &Deck, soft: bool, moved: f64) -> Problem {
     let mut problem = hand_over::without_null_spaces(deck).unwrap();
     for (p, body) in deck.bodies.iter().enumerate() {
-        problem.set_soft_coordinates(p, soft).unwrap();
+        let modes = if soft { Modes::Soft } else { Modes::Candidates };
+        problem.set_coordinate_modes(p, modes).unwrap();
         give_places(&mut problem, p, body, moved);
     }
     problem
@@ -86,7 +87,30 @@ fn supports_may_hold_some_soft_motions_or_all() {
         let mut problem = placed(&deck, true, 0.0);
         let (forces, u) = errors(&deck, &solved(&mut problem).unwrap());
         assert!(forces <= 1e-8 && u <= 1e-8, "support {support:e}: forces {forces:.1e} u {u:.1e}");
-        assert_eq!(problem.findings().unwrap().soft, [0, 1], "support {support:e}");
+        // one support leaves the rotation about it
+        let soft: &[usize] = if nodes == 1 { &[0, 1] } else { &[1] };
+        assert_eq!(problem.findings().unwrap().soft, soft, "support {support:e} at {nodes} nodes");
+    }
+}
+
+/// Blocks on supports all along their lower edge, declared soft because the host does not know which of them float: motions that
+/// K resists like any other have no column.
+#[test]
+fn motions_of_clamped_bodies_declared_soft_cost_no_column() {
+    for support in [0.3, 1.0, 1e3] {
+        let mut deck = with_springs(column(3), 1e-7);
+        let largest = deck.bodies[0].stiffness.diagonal().into_iter().fold(0.0, f64::max);
+        (0..2 * (ELEMENTS[0] + 1)).for_each(|dof| add_diagonal(&mut deck.bodies[0], dof, support * largest));
+        let [mut soft, mut plain] = [true, false].map(|soft| placed(&deck, soft, 0.0));
+        let (forces, u) = errors(&deck, &solved(&mut soft).unwrap());
+        assert!(forces <= 1e-8 && u <= 1e-8, "support {support:e}: forces {forces:.1e} u {u:.1e}");
+        plain.setup().unwrap();
+        for body in 0..3 {
+            let motions = |problem: &Problem| problem.body_facts(body).unwrap().factors.unwrap().null_space;
+            let expected = if body == 0 { 0 } else { 3 };
+            assert_eq!(motions(&soft), expected, "support {support:e}, body {body}");
+            assert!(body > 0 || motions(&plain) == 0);
+        }
     }
 }
 
@@ -116,7 +140,7 @@ fn each_part_of_a_body_has_soft_motions_of_its_own() {
     whole.set_stiffness(body, input).unwrap();
     whole.set_load(body, &load).unwrap();
     whole.set_coordinates(body, 2, &node, &direction, &places, 2).unwrap();
-    whole.set_soft_coordinates(body, true).unwrap();
+    whole.set_coordinate_modes(body, Modes::Soft).unwrap();
     hand_over::add_rows(&mut whole, RowKind::Inequality, &deck.contact).unwrap();
     hand_over::add_rows(&mut whole, RowKind::Equality, &deck.equalities).unwrap();
     let (forces, u) = errors(&deck, &solved(&mut whole).unwrap());
@@ -145,7 +169,7 @@ fn the_word_of_soft_coordinates_holds_until_it_is_taken_back() {
     give_places(&mut problem, 0, &deck.bodies[0], 2e-3);
     let other = solved(&mut problem).unwrap();
     assert!(difference(&other.lambda, &one.lambda) <= 1e-8);
-    problem.set_soft_coordinates(0, false).unwrap();
+    problem.set_coordinate_modes(0, Modes::Candidates).unwrap();
     assert!(problem.solve().is_err());
     let motions = deck.bodies[0].modes();
     problem

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::ffi::boundary::{call, column_major, count, enter, id, input, meaning, same, Output};
-use crate::ffi::header::types::{feti_problem, FETI_ALL, FETI_CANDIDATES, FETI_SOFT};
-use crate::solver::Problem;
+use crate::ffi::header::types::{feti_problem, FETI_ALL, FETI_CANDIDATES, FETI_EXACT, FETI_SOFT};
+use crate::solver::{Modes, Problem};
 
 /// Adds a body with `n` unknowns.
 ///
@@ -80,11 +80,19 @@ pub unsafe extern "C" fn feti_body_coordinates(
     })
 }
 
-/// Says how to use the rigid body motions that the coordinates give: as candidates for the null space, or as motions that
-/// K resists weakly.
+/// The meaning of motions.
+pub(super) fn modes(flags: i32) -> Result<Modes> {
+    let known = [(FETI_EXACT, Modes::Exact), (FETI_CANDIDATES, Modes::Candidates), (FETI_SOFT, Modes::Soft)];
+    meaning(flags, "flags", &known, "none of FETI_EXACT, FETI_CANDIDATES, FETI_SOFT")
+}
+
+/// Says how to use the rigid body motions that the coordinates give: as candidates for the null space, as the null space, or
+/// as motions that K resists weakly.
 ///
 /// The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given before or after this
-/// call; the default is FETI_CANDIDATES. With FETI_SOFT, weak springs, rounding of the entries of K, geometric stiffness
+/// call; the default is FETI_CANDIDATES. With FETI_EXACT you declare that the body floats as a whole: feti_setup refuses the
+/// body, and names the unknown, if K resists a rigid body motion by more than rounding, for example because a coefficient is
+/// missing. With FETI_SOFT, weak springs, rounding of the entries of K, geometric stiffness
 /// and supports may give the motions a positive or negative stiffness, and the motions need not be exact. The library
 /// computes the motions and their stiffness from K and takes them into account exactly, as it does for motions given to
 /// feti_body_null_space with FETI_SOFT. That function also describes what happens if K is indefinite or has further null
@@ -95,13 +103,11 @@ pub unsafe extern "C" fn feti_body_coordinates(
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
-/// | `flags` | in | scalar | FETI_CANDIDATES or FETI_SOFT |
+/// | `flags` | in | scalar | FETI_EXACT, FETI_CANDIDATES or FETI_SOFT |
 #[no_mangle]
 pub extern "C" fn feti_body_coordinates_flags(p: *mut feti_problem, body: i64, flags: i32) -> i32 {
     enter(p, call!(feti_body_coordinates_flags(p, body, flags)), |problem| {
-        let known = [(FETI_CANDIDATES, false), (FETI_SOFT, true)];
-        let soft = meaning(flags, "flags", &known, "neither FETI_CANDIDATES nor FETI_SOFT")?;
-        problem.set_soft_coordinates(id(body, "body")?, soft)
+        problem.set_coordinate_modes(id(body, "body")?, modes(flags)?)
     })
 }
 

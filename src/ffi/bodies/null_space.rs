@@ -1,9 +1,9 @@
 //! Null spaces of the bodies: the columns of R span all u with K u = 0.
 
 use crate::error::{Error, INDEX};
-use crate::ffi::bodies::body::body_of_order;
-use crate::ffi::boundary::{call, column_major, count, enter, id, input, meaning, numbers, same, Output};
-use crate::ffi::header::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT, FETI_SOFT};
+use crate::ffi::bodies::body::{body_of_order, modes};
+use crate::ffi::boundary::{call, column_major, count, enter, id, input, numbers, same, Output};
+use crate::ffi::header::types::feti_problem;
 use crate::platform::memory::reserved;
 use crate::solver::Modes;
 
@@ -45,9 +45,7 @@ pub unsafe extern "C" fn feti_body_null_space(
     enter(p, call!(feti_body_null_space(p, body, r, n, basis, ldr, flags)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
         let r = count(r, "r")?;
-        let known =
-            [(FETI_EXACT, Modes::Exact), (FETI_CANDIDATES, Modes::Candidates), (FETI_SOFT, Modes::Soft)];
-        let modes = meaning(flags, "flags", &known, "none of FETI_EXACT, FETI_CANDIDATES, FETI_SOFT")?;
+        let modes = modes(flags)?;
         let (entries, ldr) = column_major(n, r, ldr, "ldr")?;
         // SAFETY: ldr (r - 1) + n entries guaranteed by the caller.
         problem.set_null_space(body, n, r, unsafe { input(basis, entries, "basis") }?, ldr, modes)

@@ -121,12 +121,17 @@ impl Matrix {
 
     /// Orthonormal basis of the column space: Gram-Schmidt, twice, the longest remaining column first. Columns are left
     /// out if less than `drop` of their length is left.
-    pub fn orthonormalised(mut self, drop: f64) -> Self {
+    pub fn orthonormalised(self, drop: f64) -> Self {
+        self.orthonormalised_in_order(drop).0
+    }
+
+    /// The same, with the column that each vector of the basis comes from.
+    pub fn orthonormalised_in_order(mut self, drop: f64) -> (Self, Vec<usize>) {
         let lengths: Vec<f64> = (0..self.cols).map(|j| norm(self.col(j))).collect();
         for (j, &length) in lengths.iter().enumerate().filter(|(_, length)| **length > 0.0) {
             self.col_mut(j).iter_mut().for_each(|v| *v /= length);
         }
-        let mut basis = Self { rows: self.rows, ..Self::default() };
+        let (mut basis, mut order) = (Self { rows: self.rows, ..Self::default() }, Vec::new());
         let mut left: Vec<usize> = (0..self.cols).filter(|&j| lengths[j] > 0.0).collect();
         while let Some(at) = longest(&self, &left) {
             let j = left.remove(at);
@@ -145,8 +150,9 @@ impl Matrix {
                 axpy(-part, &column, self.col_mut(k));
             }
             basis.push_col(&column);
+            order.push(j);
         }
-        basis
+        (basis, order)
     }
 }
 

@@ -9,6 +9,9 @@ use crate::platform::memory::{headroom, PRODUCTS};
 
 /// Eigenvalues of the symmetric matrix `a`, ascending, with the eigenvectors as columns.
 pub fn symmetric_eigen(a: &Matrix) -> Result<(Vec<f64>, Matrix)> {
+    if a.cols == 0 {
+        return Ok((Vec::new(), Matrix::default()));
+    }
     let _room = headroom(PRODUCTS + 8 * a.data.len() * size_of::<f64>(), "the eigenvalues of a matrix")?;
     if a.cols == 0 {
         return Ok((Vec::new(), Matrix::zeros(0, 0)?));

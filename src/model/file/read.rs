@@ -41,7 +41,7 @@ enum SectionContent {
     Pieces(PiecesInput),
     NullSpace { n: usize, r: usize, modes: Modes, basis: Vec<f64> },
     Coordinates { places: Vec<f64>, directions: Vec<i32> },
-    CoordinatesFlags { soft: bool },
+    CoordinatesFlags(Modes),
     Fixing(Vec<usize>),
     Load(Vec<f64>),
     Numbering(Vec<i64>),
@@ -86,10 +86,7 @@ impl SectionContent {
                 let places = input.reals(open, 3 * n)?;
                 Self::Coordinates { places, directions: input.array(open, n, i32::from_le_bytes)? }
             }
-            COORDINATES_FLAGS => match input.number(open)? {
-                number @ (CANDIDATES | SOFT) => Self::CoordinatesFlags { soft: number == SOFT },
-                number => return Err(input.wrong(open, &format!("{number} is no kind of rigid motions"))),
-            },
+            COORDINATES_FLAGS => Self::CoordinatesFlags(modes(input, open, "rigid motions")?),
             FIXING => Self::Fixing(input.counted(open, saturated)?),
             LOAD => Self::Load(input.counted(open, f64::from_le_bytes)?),
             NUMBERING => Self::Numbering(input.counted(open, i64::from_le_bytes)?),
@@ -122,12 +119,7 @@ impl SectionContent {
 
     fn null_space<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
         let (n, r) = (input.size(open)?, input.size(open)?);
-        let modes = match input.number(open)? {
-            EXACT => Modes::Exact,
-            CANDIDATES => Modes::Candidates,
-            SOFT => Modes::Soft,
-            number => return Err(input.wrong(open, &format!("{number} is no kind of null space"))),
-        };
+        let modes = modes(input, open, "null space")?;
         let basis = input.reals(open, n.saturating_mul(r))?;
         Ok(Self::NullSpace { n, r, modes, basis })
     }
@@ -193,7 +185,7 @@ impl SectionContent {
             Self::Coordinates { places, directions } => {
                 model.set_coordinates(body, 3, &directions, &directions, &places, 3)
             }
-            Self::CoordinatesFlags { soft } => model.set_soft_coordinates(body, soft),
+            Self::CoordinatesFlags(modes) => model.set_coordinate_modes(body, modes),
             Self::Fixing(dofs) => model.set_fixing(body, Some(&dofs)),
             Self::Load(f) => model.set_load(body, &f),
             Self::Numbering(numbers) => model.set_numbering(body, &numbers),
@@ -289,4 +281,14 @@ impl Offsets {
         }
         Ok((body, dof))
     }
+}
+
+/// The meaning of motions, `of` in words.
+fn modes<R: Read>(input: &mut Input<R>, open: &mut OpenSection, of: &str) -> Result<Modes> {
+    Ok(match input.number(open)? {
+        EXACT => Modes::Exact,
+        CANDIDATES => Modes::Candidates,
+        SOFT => Modes::Soft,
+        number => return Err(input.wrong(open, &format!("{number} is no kind of {of}"))),
+    })
 }

@@ -164,6 +164,11 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
     let n = Number(body.order as u64);
     let order = Some(Section { tag: BODY, pieces: vec![n] });
     let count = |len: usize| Number(len as u64);
+    let number = |modes: Modes| match modes {
+        Modes::Exact => Number(EXACT),
+        Modes::Candidates => Number(CANDIDATES),
+        Modes::Soft => Number(SOFT),
+    };
     let stiffness = body.stiffness.as_ref().map(|k| {
         let sizes = [count(k.order()), count(k.val.len())];
         let arrays = [Numbers(&k.ptr), Reals(&k.val), Columns(&k.col)];
@@ -171,12 +176,7 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
     });
     let pieces = body.assembled.as_ref().and(given.mesh.as_ref()).and_then(Mesh::pieces).map(of_pieces);
     let null_space = body.null_space.as_ref().map(|r| {
-        let modes = match r.modes {
-            Modes::Exact => EXACT,
-            Modes::Candidates => CANDIDATES,
-            Modes::Soft => SOFT,
-        };
-        let sizes = [count(r.vectors.rows), count(r.vectors.cols), Number(modes)];
+        let sizes = [count(r.vectors.rows), count(r.vectors.cols), number(r.modes)];
         Section { tag: NULL_SPACE, pieces: sizes.into_iter().chain([Reals(&r.vectors.data)]).collect() }
     });
     let coordinates = body.coordinates.as_ref().map(|given| {
@@ -184,7 +184,8 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
         let pieces = vec![count(given.len()), places, Directions(given.directions())];
         Section { tag: COORDINATES, pieces }
     });
-    let flags = body.soft_coordinates.then(|| Section { tag: COORDINATES_FLAGS, pieces: vec![Number(SOFT)] });
+    let flags = Some(body.coordinate_modes).filter(|modes| *modes != Modes::Candidates);
+    let flags = flags.map(|modes| Section { tag: COORDINATES_FLAGS, pieces: vec![number(modes)] });
     let fixing = body.fixing.as_ref().map(|dofs| unknowns(FIXING, dofs));
     let load = body.load.as_ref().map(|f| Section { tag: LOAD, pieces: vec![count(f.len()), Reals(f)] });
     let numbering = given.numbers.as_ref().map(|numbers| unknowns(NUMBERING, numbers));

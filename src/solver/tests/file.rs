@@ -261,7 +261,7 @@ fn what_the_calls_refuse_is_refused_with_its_section_and_place() {
         (stiffness([1.0, 1.0, -1.0], [0, 0, 1]), "indefinite"),
         (of_section(b"LOAD", 0, &numbers(&[1, 0])), "has 2 unknowns, not 1"),
         (of_section(b"NULL", 0, &numbers(&[2, 0, 3])), "no kind of null space"),
-        (of_section(b"COOF", 0, &numbers(&[0])), "no kind of rigid motions"),
+        (of_section(b"COOF", 0, &numbers(&[3])), "no kind of rigid motions"),
         (of_section(b"FIXD", 0, &numbers(&[1, 2])), "outside the 2 unknowns"),
         (of_section(b"NUMB", 0, &numbers(&[2, 4, 4])), "another unknown of the body has this number"),
         (of_section(b"NUMB", 0, &numbers(&[2, 4, u64::MAX])), "no array has an entry"),

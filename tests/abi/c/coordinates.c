@@ -89,6 +89,8 @@ static void a_driven_block_is_held_by_the_spring(void)
           (long long)facts.origin, (long long)facts.null_space);
     OK(feti_body_coordinates_flags(p, body, FETI_CANDIDATES));
     EXPECT(FETI_INDEFINITE, feti_solve(p, NULL));
+    OK(feti_body_coordinates_flags(p, body, FETI_EXACT)); /* the block does not float as a whole */
+    EXPECT(FETI_NULL_SPACE, feti_solve(p, NULL));
     OK(feti_problem_destroy(&p));
 }
 

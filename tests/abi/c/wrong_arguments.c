@@ -38,7 +38,7 @@ static void flags_of_coordinates(feti_problem *p)
 
     REFUSED(p, 2, ANY, ANY, ANY, ANY, NAME, "", feti_body_coordinates_flags(p, 2, FETI_SOFT));
     REFUSED(p, 2, ANY, ANY, ANY, ANY, NAME, "", feti_body_coordinates_flags(p, -1, FETI_SOFT));
-    REFUSED(p, 3, ANY, ANY, ANY, ANY, NAME, "FETI_SOFT", feti_body_coordinates_flags(p, BLOCK, FETI_EXACT));
+    REFUSED(p, 3, ANY, ANY, ANY, ANY, NAME, "FETI_EXACT", feti_body_coordinates_flags(p, BLOCK, -1));
     REFUSED(p, 3, ANY, ANY, ANY, ANY, NAME, "FETI_SOFT", feti_body_coordinates_flags(p, BLOCK, 3));
 }
 

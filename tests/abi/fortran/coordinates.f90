@@ -34,8 +34,11 @@ contains
     call feti_solve(p)
     call feti_displacement(p, block, u)
     call require(largest(u + [32.0_dp / 7, 85.0_dp / 14]) <= 1e-12_dp, 'a driven block goes elsewhere')
-    call feti_body_coordinates_flags(p, block, FETI_EXACT, stat)
-    call require(stat == FETI_ARGUMENT - 3, 'coordinates are taken as an exact null space')
+    call feti_body_coordinates_flags(p, block, FETI_EXACT)
+    call feti_solve(p, stat=stat)
+    call require(stat == FETI_NULL_SPACE, 'a driven block floats as a whole')
+    call feti_body_coordinates_flags(p, block, FETI_EXACT - 1, stat)
+    call require(stat == FETI_ARGUMENT - 3, 'flags of coordinates are not checked')
     call feti_problem_destroy(p)
   end subroutine
 

@@ -33,15 +33,16 @@ fn numbers_of_the_host_come_back_and_rows_go_by_them() {
 #[test]
 fn what_the_coordinates_are_comes_back_and_a_file_says_nothing_of_candidates() {
     let mut problem = small();
-    problem.set_soft_coordinates(1, true).unwrap();
+    problem.set_coordinate_modes(1, Modes::Soft).unwrap();
     let bytes = problem.write_bytes().unwrap();
     let back = read(&bytes).unwrap();
-    assert!(!back.bodies[0].body.soft_coordinates && back.bodies[1].body.soft_coordinates);
+    assert_eq!([0, 1].map(|p| back.bodies[p].body.coordinate_modes), [Modes::Candidates, Modes::Soft]);
     assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
-    problem.set_soft_coordinates(1, false).unwrap();
+    problem.set_coordinate_modes(1, Modes::Candidates).unwrap();
     assert_eq!(problem.write_bytes().unwrap(), small().write_bytes().unwrap());
     let said = [of_section(b"BODY", 0, &numbers(&[2])), of_section(b"COOF", 0, &numbers(&[1]))];
-    assert!(!read(&of_sections(FORMAT, &said)).unwrap().bodies[0].body.soft_coordinates);
+    let back = read(&of_sections(FORMAT, &said)).unwrap();
+    assert_eq!(back.bodies[0].body.coordinate_modes, Modes::Candidates);
 }
 
 #[test]
