@@ -64,8 +64,7 @@ pub(super) fn motions(
     if compliance.iter().any(|value| value.is_nan() || *value <= APART * most) || first == c.cols {
         return Ok(None);
     }
-    let all: Vec<usize> = (0..c.rows).collect();
-    c.turn_rows(&all, &v);
+    c.turn_rows(&v);
     let mut c = c.columns(first..c.cols);
     for (j, value) in compliance[first..].iter().enumerate() {
         c.col_mut(j).iter_mut().for_each(|c| *c /= value.sqrt());
@@ -77,7 +76,7 @@ pub(super) fn motions(
         return Ok(None);
     }
     let mut vectors = scaled(&y, |i| 1.0 / root[i])?;
-    vectors.turn_rows(&all, &turn);
+    vectors.turn_rows(&turn);
     for (j, value) in square.iter().enumerate() {
         vectors.col_mut(j).iter_mut().for_each(|v| *v /= value.sqrt());
     }
@@ -104,8 +103,7 @@ impl Carried {
         if values.iter().any(|value| value.is_nan() || *value < 0.5) {
             return Ok(None);
         }
-        let all: Vec<usize> = (0..t.rows).collect();
-        t.turn_rows(&all, &turn);
+        t.turn_rows(&turn);
         for (j, value) in values.iter().enumerate() {
             t.col_mut(j).iter_mut().for_each(|t| *t /= value.sqrt());
         }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::fmt;
 
 use crate::error::Result;
-use crate::linalg::Symmetric;
+use crate::linalg::{Matrix, Symmetric};
 use crate::platform::memory::{reserved, zeros};
 
 /// Number of rows in the sample, and of entries per row.
@@ -118,23 +118,16 @@ impl Digits {
         PIVOT * self.relative()
     }
 
-    /// Standard deviation of `v'E v` for each of `count` motions v, E the rounding of the entries in the rows of one
-    /// part: the errors of entries in a simple ratio have this ratio, those of other entries are independent. A matrix of
-    /// round numbers with one modulus has a single error, which resists no motion. `v(i, c)` is motion c at dof i.
-    pub fn noise(
-        self,
-        k: &Symmetric,
-        rows: &[usize],
-        count: usize,
-        v: impl Fn(usize, usize) -> f64,
-    ) -> Result<Vec<f64>> {
+    /// Standard deviation of `v'E v` for each motion v, one per column of x, E the rounding of the entries: the errors of entries in a simple ratio have this ratio, those of other entries are independent. A matrix of
+    /// round numbers with one modulus has a single error, which resists no motion.
+    pub fn noise(self, k: &Symmetric, x: &Matrix) -> Result<Vec<f64>> {
         const WHAT: &str = "the rounding of a stiffness matrix";
         let mut slots: HashMap<u64, (usize, f64)> = HashMap::new();
-        let entries = rows.iter().map(|&i| k.ptr[i + 1] - k.ptr[i]).sum::<usize>();
+        let (entries, count) = (k.col.len(), x.cols);
         // the first entry of each slot, and the spacing at it
         let (mut first, mut units, mut sums) =
             (reserved(entries, WHAT)?, reserved(entries, WHAT)?, zeros(entries * count, WHAT)?);
-        for &i in rows {
+        for i in 0..k.order() {
             for (j, value) in k.lower_row(i).filter(|entry| entry.1 != 0.0) {
                 let size = value.abs();
                 let (slot, ratio) = *slots.entry(size.to_bits()).or_insert_with(|| {
@@ -149,7 +142,7 @@ impl Digits {
                     (slot, ratio)
                 });
                 let times = ratio * if i == j { value.signum() } else { 2.0 * value.signum() };
-                (0..count).for_each(|c| sums[slot * count + c] += times * v(i, c) * v(j, c));
+                (0..count).for_each(|c| sums[slot * count + c] += times * x.get(i, c) * x.get(j, c));
             }
         }
         let square = |c: usize, slot: usize| (units[slot] * sums[slot * count + c]).powi(2) / 12.0;
@@ -294,9 +287,9 @@ mod tests {
         for turn in 0..200 {
             let k = chain(50, |i| 1.0 + 7.0 * (3.0 * (i + 100 * turn) as f64).sin().abs(), 0.0);
             let near = rounded(k.clone(), |v| printed(v, 8));
-            let rows: Vec<usize> = (0..50).collect();
-            let expected = digits.noise(&near, &rows, 1, |_, _| 1.0).unwrap()[0];
             let ones = vec![1.0; 50];
+            let motion = Matrix { rows: 50, cols: 1, data: ones.clone() };
+            let expected = digits.noise(&near, &motion).unwrap()[0];
             let mut image = vec![0.0; 50];
             near.mul(&ones, &mut image);
             let found = image.iter().sum::<f64>() / expected;

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use crate::body::carried::{self, Carried, Motions};
 use crate::body::misfit::Misfit;
-use crate::body::null_space::{one_column_each, ROUNDING as KNOWN};
+use crate::body::null_space::ROUNDING as KNOWN;
 use crate::body::probe::{known_to, Factor};
 use crate::body::rounded::Rounded;
-use crate::body::soft::{known_to_entries, soft_motions, Apart};
+use crate::body::soft::{known_to_entries, soft_motions};
 use crate::body::spectrum::Doubt;
 use crate::error::Result;
 use crate::linalg::cholesky::{inverse_columns, inverse_form};
@@ -34,8 +34,8 @@ pub struct GeneralizedInverse {
     pub gap: Option<f64>,
     /// `|f| / | |K||K+ f| |` for a random load, no unit: K+ amplifies rounding by its inverse.
     pub softness: f64,
-    /// Motions, part by part, whose resistance may be only rounding of the entries of K.
-    pub doubts: Vec<Doubt>,
+    /// Motions whose resistance may be only rounding of the entries of K.
+    pub doubt: Option<Doubt>,
     /// Coordinates or candidates of which not all fit: with `gap`, the library searched the null space in K; otherwise K
     /// holds the others.
     pub misfit: Option<Misfit>,
@@ -62,9 +62,8 @@ pub struct Factorised {
 pub enum Layout {
     /// The dofs held.
     Held(Vec<usize>),
-    /// Dofs of every connected part that are eliminated last, and the zero entries of K between parts, which are left
-    /// out.
-    Last { dofs: Vec<Vec<usize>>, between: Vec<usize> },
+    /// Dofs that are eliminated last.
+    Last(Vec<usize>),
 }
 
 /// A symbolic analysis and its layout.
@@ -234,10 +233,7 @@ impl GeneralizedInverse {
 
     /// Replaces the vectors by soft motions and their stiffness.
     fn softened(mut self, k: &Multiple) -> Result<Self> {
-        let Apart { vectors, parts } = Apart::of(k, &self.null_space)?;
-        let parts: Vec<_> = parts.iter().map(|(dofs, count)| (&dofs[..], *count)).collect();
-        let (motions, stiffness) = soft_motions(&self.factor, k, vectors, &parts)?;
-        (self.null_space, self.stiffness) = (one_column_each(&motions, &parts)?, stiffness);
+        (self.null_space, self.stiffness) = soft_motions(&self.factor, k, self.null_space)?;
         self.error = known_to_entries(&self.factor, k, &self.null_space)?;
         Ok(self)
     }
@@ -245,8 +241,7 @@ impl GeneralizedInverse {
     /// Measures the error of a null space that K maps to more than rounding, as amplified by the factor.
     fn measured(mut self, k: &Multiple) -> Result<Self> {
         if self.error > KNOWN {
-            let dofs: Vec<usize> = (0..k.order()).collect();
-            self.error = known_to(&self.factor, k, &self.null_space, &[(&dofs, self.null_space.cols)])?;
+            self.error = known_to(&self.factor, k, &self.null_space)?;
         }
         Ok(self)
     }

@@ -36,7 +36,7 @@ impl GeneralizedInverse {
             fixing: Vec::new(),
             gap: None,
             softness: 1.0,
-            doubts: Vec::new(),
+            doubt: None,
             misfit,
             factor: Factor::Host(k),
             carried: None,

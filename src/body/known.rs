@@ -100,7 +100,7 @@ impl Known {
             fixing: self.fixing.clone(),
             gap: None,
             softness,
-            doubts: self.doubt.into_iter().collect(),
+            doubt: self.doubt,
             misfit: self.held(),
             factor,
             carried: None,

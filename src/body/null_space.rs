@@ -93,70 +93,40 @@ pub struct Verified {
     pub misfit: Option<Misfit>,
 }
 
-/// Dofs without coupling stiffness to the others.
-pub struct FreePart<'a> {
-    pub dofs: &'a [usize],
-    /// Number of null vectors of the part, which are in the first columns.
-    pub count: usize,
-    pub tolerance: f64,
-}
-
-/// Checks `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`, part by
-/// part: column j of `vectors` has the null vectors j of all parts. The cost is linear in the number of parts.
-pub fn verified_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreePart<'_>]) -> Result<Verified> {
-    let basis = orthonormal_by_parts(k, vectors, parts)?;
+/// Checks `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`.
+pub fn exact<K: Products>(k: &K, vectors: &Matrix, tolerance: f64) -> Result<Verified> {
+    let basis = orthonormal(k, vectors)?;
     let (image, terms) = k.mul_columns(&basis)?;
     let mut error = ROUNDING;
     let weight = |i: usize| 1.0 / k.metric(i, 1.0);
-    for &FreePart { dofs, count, tolerance } in parts {
-        for j in 0..count {
-            let part = |of: &Matrix| dofs.iter().map(|&i| of.get(i, j)).collect::<Vec<f64>>();
-            let image = part(&image);
-            let left = weighted_norm(&image, |at| weight(dofs[at]));
-            let found = ratio(left, weighted_norm(&part(&terms), |at| weight(dofs[at])));
-            if found.is_nan() || found > tolerance && left > ROUNDING {
-                let what =
-                    format!("not a null space: |K R| = {found:.1e} {} exceeds {tolerance:.1e}", K::TERMS);
-                return Err(Error::new(Kind::NullSpace, what)
-                    .dof(dofs[largest(&image, |at| weight(dofs[at]))])
-                    .value(found)
-                    .limit(tolerance));
-            }
-            // the resistance of A to z measures the error; at single dofs the error is larger than the mean
-            error = error.max(PEAK * found.min(left));
+    for j in 0..basis.cols {
+        let left = weighted_norm(image.col(j), weight);
+        let found = ratio(left, weighted_norm(terms.col(j), weight));
+        if found.is_nan() || found > tolerance && left > ROUNDING {
+            let what = format!("not a null space: |K R| = {found:.1e} {} exceeds {tolerance:.1e}", K::TERMS);
+            let dof = largest(image.col(j), weight);
+            return Err(Error::new(Kind::NullSpace, what).dof(dof).value(found).limit(tolerance));
         }
+        // the resistance of A to z measures the error; at single dofs the error is larger than the mean
+        error = error.max(PEAK * found.min(left));
     }
     Ok(Verified { basis, error, misfit: None })
 }
 
-/// A basis of the span with `R'DR = I`, part by part.
-pub fn orthonormal_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreePart<'_>]) -> Result<Matrix> {
+/// A basis of the span with `R'DR = I`.
+pub fn orthonormal<K: Products>(k: &K, vectors: &Matrix) -> Result<Matrix> {
     let root = |i: usize| k.metric(i, 1.0).sqrt();
-    let mut basis = Matrix::zeros(vectors.rows, vectors.cols)?;
-    for &FreePart { dofs, count, .. } in parts {
-        let own = Matrix::from_fn(dofs.len(), count, |at, j| root(dofs[at]) * vectors.get(dofs[at], j))?;
-        let own = own.orthonormalised(DEPENDENT);
-        if own.cols < count {
-            let what = format!("the {count} vectors span only {} dimensions", own.cols);
-            return Err(Error::new(Kind::NullSpace, what).value(own.cols as f64).limit(count as f64));
-        }
-        for j in 0..count {
-            own.col(j).iter().zip(dofs).for_each(|(v, &i)| basis.set(i, j, v / root(i)));
-        }
+    let scaled = Matrix::from_fn(vectors.rows, vectors.cols, |i, j| root(i) * vectors.get(i, j))?;
+    let mut basis = scaled.orthonormalised(DEPENDENT);
+    if basis.cols < vectors.cols {
+        let what = format!("the {} vectors span only {} dimensions", vectors.cols, basis.cols);
+        let error = Error::new(Kind::NullSpace, what);
+        return Err(error.value(basis.cols as f64).limit(vectors.cols as f64));
+    }
+    for j in 0..basis.cols {
+        basis.col_mut(j).iter_mut().enumerate().for_each(|(i, v)| *v /= root(i));
     }
     Ok(basis)
-}
-
-/// The null vectors of all parts, one per column, n x r. `parts`: dofs and number of null vectors of each part.
-pub fn one_column_each(vectors: &Matrix, parts: &[(&[usize], usize)]) -> Result<Matrix> {
-    let (mut all, mut at) = (Matrix::zeros(vectors.rows, parts.iter().map(|part| part.1).sum())?, 0);
-    for &(dofs, count) in parts {
-        for j in 0..count {
-            dofs.iter().for_each(|&i| all.set(i, at, vectors.get(i, j)));
-            at += 1;
-        }
-    }
-    Ok(all)
 }
 
 /// Position of the largest `w_i x_i^2`.

@@ -1,5 +1,4 @@
-//! The end of the elimination of one connected part: which of its softest motions form its null space, and which are held
-//! by weak springs.
+//! The end of the elimination: which of the softest motions form the null space, and which are held by weak springs.
 
 use crate::body::digits::Digits;
 use crate::body::null_space::largest;
@@ -7,14 +6,14 @@ use crate::body::spectrum::{cut, unclear, Doubt, MotionVerdict, Ritz};
 use crate::error::Result;
 use crate::linalg::{Breakdown, Matrix};
 
-/// The Schur complement S of one part, and eigenvalues and eigenvectors of `D_tt^-1/2 S D_tt^-1/2`, m x m.
+/// The Schur complement S, and eigenvalues and eigenvectors of `D_tt^-1/2 S D_tt^-1/2`, m x m.
 pub struct End {
     pub schur: Matrix,
     pub values: Vec<f64>,
     pub vectors: Matrix,
 }
 
-/// The softest motions of one part.
+/// The softest motions.
 pub struct Soft {
     pub schur: Matrix,
     /// m x r, the null vectors at t multiplied by D^1/2.
@@ -28,8 +27,8 @@ pub struct Soft {
 }
 
 impl End {
-    /// `ritz`: the softest motions measured over the part, empty if the eigenvalues at t suffice. `last`: the dofs t. The
-    /// number of `few` digits is only reported, if K holds the part.
+    /// `ritz`: the softest motions measured over the body, empty if the eigenvalues at t suffice. `last`: the dofs t. The
+    /// number of `few` digits is only reported, if K holds the body.
     pub fn decided(
         self,
         digits: Option<Digits>,

@@ -2,17 +2,16 @@
 
 use std::sync::Arc;
 
-use crate::body::candidates::{kernel_by_parts, verified};
+use crate::body::candidates::{verified, Kernel};
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
 use crate::body::known::{Known, Retry};
 use crate::body::misfit::{Misfit, RESISTED};
-use crate::body::null_space::{one_column_each, Modes, NullSpaceInput, Verified, ROUNDING as KNOWN};
+use crate::body::null_space::{Modes, NullSpaceInput, Verified, ROUNDING as KNOWN};
 use crate::body::probe::PROBE;
-use crate::body::rigid_modes::RigidModes;
 use crate::body::search::Search;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::Multiple;
+use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{headroom, PRODUCTS};
 use crate::platform::tally;
 
@@ -38,11 +37,9 @@ impl GeneralizedInverse {
         let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
         let _room = headroom(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
         if input.modes == Modes::Soft && fixing.is_none() {
-            let all: Vec<usize> = (0..k.order()).collect();
-            let found = kernel_by_parts(&k, &input.vectors, &[(&all, input.vectors.cols)], RESISTED)?;
+            let found = Kernel::of(&k, &input.vectors, RESISTED)?;
             if found.misfit().is_some() {
-                let vectors = found.kernel.columns(0..found.counts[0]);
-                let kept = NullSpaceInput { vectors, modes: Modes::Soft };
+                let kept = NullSpaceInput { vectors: found.motions, modes: Modes::Soft };
                 return Ok(Self::plan_all(k, &kept, tolerance, None)?.or_all_soft(input.clone()));
             }
         }
@@ -95,13 +92,11 @@ impl Plan {
     }
 
     /// Adds rigid motions that the coarse problem shall have, whether K resists them or not.
-    pub fn carrying(self, rigid: &RigidModes) -> Result<Self> {
-        Ok(match self {
-            Self::Known(known) => {
-                Self::Known(Known { rigid: Some(one_column_each(&rigid.modes, &rigid.parts())?), ..known })
-            }
+    pub fn carrying(self, rigid: Matrix) -> Self {
+        match self {
+            Self::Known(known) => Self::Known(Known { rigid: Some(rigid), ..known }),
             planned => planned,
-        })
+        }
     }
 
     /// Takes over the layout of another body with the same pattern, or of this body with other values, if it is suitable.
@@ -159,7 +154,6 @@ impl Plan {
             Self::Known(known) if other.gap.is_none() && other.own_motions() == known.null_space.cols => {
                 let misfit = known.held();
                 let Known { k, null_space, error, doubt, soft, rigid, .. } = known;
-                let doubts = doubt.into_iter().collect();
                 let (rounding, stiffness) = (KNOWN, Vec::new());
                 let (carried, other) = (None, other.clone());
                 let own = GeneralizedInverse {
@@ -167,7 +161,7 @@ impl Plan {
                     stiffness,
                     rounding,
                     error,
-                    doubts,
+                    doubt,
                     misfit,
                     carried,
                     ..other
@@ -246,9 +240,7 @@ impl Retry {
                 .execute()?
             }
             Self::AllSoft(NullSpaceInput { vectors, modes }) => {
-                let all: Vec<usize> = (0..k.order()).collect();
-                let found = kernel_by_parts(&k, &vectors, &[(&all, vectors.cols)], f64::INFINITY)?;
-                let vectors = found.kernel.columns(0..found.counts[0]);
+                let vectors = Kernel::of(&k, &vectors, f64::INFINITY)?.motions;
                 let input = NullSpaceInput { vectors, modes };
                 GeneralizedInverse::plan_all(k, &input, f64::INFINITY, None)?.execute()?
             }

@@ -8,7 +8,7 @@ use crate::body::null_space::{largest, overflow, ROUNDING as KNOWN};
 use crate::body::rounded::Rounded;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::random::Random;
-use crate::linalg::vector::weighted_norm;
+use crate::linalg::vector::{norm_max, weighted_norm};
 use crate::linalg::{Breakdown, Cholesky, Matrix, Multiple};
 use crate::platform::memory::zeros;
 
@@ -115,22 +115,13 @@ pub(super) fn probe(factor: &Factor, k: &Multiple, fixing: &[usize], modes: usiz
     Ok(found)
 }
 
-/// `|K+ K R|`, zero except for errors of R: the factor amplifies the residual K R as it amplifies rounding. `parts`: dofs
-/// of each part and its number of null vectors, which are in the first columns of R.
-pub(super) fn known_to(
-    factor: &Factor,
-    k: &Multiple,
-    r: &Matrix,
-    parts: &[(&[usize], usize)],
-) -> Result<f64> {
+/// `|K+ K R|`, zero except for errors of R: the factor amplifies the residual K R as it amplifies rounding.
+pub(super) fn known_to(factor: &Factor, k: &Multiple, r: &Matrix) -> Result<f64> {
     let (mut turned, _) = k.mul_columns(r)?;
-    (0..turned.cols).try_for_each(|j| factor.solve(turned.col_mut(j)))?;
     let mut worst: f64 = KNOWN;
-    for &(dofs, count) in parts {
-        for j in 0..count {
-            let size = |of: &Matrix| dofs.iter().map(|&i| of.get(i, j).abs()).fold(0.0, f64::max);
-            worst = worst.max(SAMPLE * size(&turned) / size(r));
-        }
+    for j in 0..r.cols {
+        factor.solve(turned.col_mut(j))?;
+        worst = worst.max(SAMPLE * norm_max(turned.col(j)) / norm_max(r.col(j)));
     }
     Ok(worst.min(MOST_ERROR))
 }

@@ -1,10 +1,9 @@
 //! Rigid-body modes from the coordinates of the dofs: candidates for the null space.
 
 use crate::error::{Error, Result};
-use crate::linalg::graph::components;
 use crate::linalg::vector::{first_non_finite, norm};
-use crate::linalg::{Matrix, SpdSolver, Symmetric};
-use crate::platform::memory::{copied, headroom, reserved, zeros};
+use crate::linalg::{Matrix, SpdSolver};
+use crate::platform::memory::{copied, headroom, reserved};
 
 /// Direction and position of each dof.
 #[derive(Debug, Clone)]
@@ -15,27 +14,11 @@ pub struct Coordinates {
     place: Vec<[f64; 3]>,
 }
 
-/// Rigid modes of the parts of a body.
-pub struct RigidModes {
-    /// Modes j of all parts in column j.
-    pub modes: Matrix,
-    /// Dofs of every part, and the number of its modes.
-    pub members: Vec<Vec<usize>>,
-    pub counts: Vec<usize>,
-}
-
-impl RigidModes {
-    /// Dofs of every part and the number of its modes.
-    pub fn parts(&self) -> Vec<(&[usize], usize)> {
-        self.members.iter().map(Vec::as_slice).zip(self.counts.iter().copied()).collect()
-    }
-}
-
 /// Bound of the remainder after a rigid motion is decomposed.
 const RIGID: f64 = 1e-6;
 
-/// Bytes for the parts of a body and their members, per dof.
-const PER_DOF: usize = 128;
+/// Bytes of the modes, per dof.
+const PER_DOF: usize = 48;
 
 impl Coordinates {
     /// `place(i, k)` is coordinate k of dof i at `xyz[k + ld i]`, k < dim.
@@ -88,50 +71,30 @@ impl Coordinates {
         self.direction == other.direction && bits(&self.place)
     }
 
-    /// The six rigid modes of every connected part except single springs to the ground, without modes that move nothing:
-    /// modes j of all parts in column j, n x (up to 6).
-    pub fn rigid_modes(&self, stiffness: &Symmetric) -> Result<RigidModes> {
+    /// The rigid modes of a connected body, n x (up to 6), without modes that move nothing; none for a single spring to the
+    /// ground.
+    pub fn rigid_modes(&self, stiff: impl Fn(usize) -> bool) -> Result<Matrix> {
         let _room = headroom(self.len() * PER_DOF, "the rigid modes of a body")?;
-        let (part_of, parts) = components(stiffness);
-        let mut members = vec![Vec::new(); parts];
-        part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
-        self.motions(members, |dof| stiffness.diagonal(dof) > 0.0)
-    }
-
-    /// The rigid modes of a body whose parts are not known: it counts as one part.
-    pub fn rigid_modes_of_one(&self, stiff: impl Fn(usize) -> bool) -> Result<Matrix> {
-        let _room = headroom(self.len() * PER_DOF, "the rigid modes of a body")?;
-        Ok(self.motions(vec![(0..self.len()).collect()], stiff)?.modes)
-    }
-
-    /// The rigid modes of all parts, except single dofs with stiffness.
-    fn motions(&self, members: Vec<Vec<usize>>, stiff: impl Fn(usize) -> bool) -> Result<RigidModes> {
-        let (mut modes, mut counts) = (Matrix::zeros(self.len(), 0)?, vec![0; members.len()]);
+        let mut modes = Matrix::zeros(self.len(), 0)?;
+        if self.len() == 1 && stiff(0) {
+            return Ok(modes);
+        }
         modes.data = reserved(self.len() * 6, "the rigid modes of a body")?;
-        let floats = |dofs: &[usize]| dofs.len() > 1 || !stiff(dofs[0]);
-        let empty = zeros(self.len(), "the rigid modes of a body")?;
-        for (dofs, count) in members.iter().zip(&mut counts).filter(|(dofs, _)| floats(dofs)) {
-            let (centre, size) = self.extent(dofs);
-            for mode in 0..6 {
-                let motion = |i: usize| self.motion(i, mode, centre, size);
-                if dofs.iter().all(|&i| motion(i) == 0.0) {
-                    continue;
-                }
-                if modes.cols == *count {
-                    modes.push_col(&empty);
-                }
-                dofs.iter().for_each(|&i| modes.set(i, *count, motion(i)));
-                *count += 1;
+        let (centre, size) = self.extent();
+        for mode in 0..6 {
+            let motion = |i: usize| self.motion(i, mode, centre, size);
+            if (0..self.len()).any(|i| motion(i) != 0.0) {
+                modes.data.extend((0..self.len()).map(motion));
+                modes.cols += 1;
             }
         }
-        Ok(RigidModes { modes, members, counts })
+        Ok(modes)
     }
 
     /// The rigid motion of v, one entry per dof: velocity of the origin (length) and rotation about the axes, of least
     /// size if v does not determine it. `None` if v is not a rigid motion of the whole body.
     pub fn rigid_motion(&self, v: &[f64]) -> Option<[f64; 6]> {
-        let all: Vec<usize> = (0..self.len()).collect();
-        let (centre, size) = self.extent(&all);
+        let (centre, size) = self.extent();
         let modes = Matrix::from_fn(self.len(), 6, |i, mode| self.motion(i, mode, centre, size)).ok()?;
         let mut normal = Matrix::zeros(6, 6).ok()?;
         (0..6).for_each(|j| normal.col_mut(j).copy_from_slice(&modes.mul_transposed(modes.col(j))));
@@ -147,13 +110,13 @@ impl Coordinates {
     }
 
     /// Centre and half the largest edge of the box around the dofs (1 for a point).
-    fn extent(&self, dofs: &[usize]) -> ([f64; 3], f64) {
-        let mut low = self.place[dofs[0]];
+    fn extent(&self) -> ([f64; 3], f64) {
+        let mut low = self.place[0];
         let mut high = low;
-        for &i in dofs {
+        for place in &self.place {
             for k in 0..3 {
-                low[k] = low[k].min(self.place[i][k]);
-                high[k] = high[k].max(self.place[i][k]);
+                low[k] = low[k].min(place[k]);
+                high[k] = high[k].max(place[k]);
             }
         }
         let size = (0..3).map(|k| 0.5 * (high[k] - low[k])).fold(0.0, f64::max);
@@ -186,6 +149,7 @@ impl Coordinates {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::Symmetric;
 
     #[test]
     fn a_motion_is_taken_apart_into_the_velocity_of_the_origin_and_a_rotation() {
@@ -216,7 +180,8 @@ mod tests {
         }
         let xyz = [0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 3.0, 4.0];
         let coordinates = Coordinates::new(2, &[1, 2, 1, 2], &xyz, 2).unwrap();
-        let modes = coordinates.rigid_modes(&Symmetric::new(ptr, col, val)).unwrap().modes;
+        let k = Symmetric::new(ptr, col, val);
+        let modes = coordinates.rigid_modes(|i| k.diagonal(i) > 0.0).unwrap();
         assert_eq!(modes.cols, 3);
         for j in 0..3 {
             let stretch: f64 = (0..4).map(|i| t[i] * modes.get(i, j)).sum();

@@ -1,6 +1,6 @@
 //! The null space `R_p` found from the stiffness matrix alone, and `K_p+` from the same factor.
 //!
-//! In every connected part some dofs t, spread over it, are eliminated last, each with an added spring of its own diagonal
+//! Some dofs t, spread over the body, are eliminated last, each with an added spring of its own diagonal
 //! stiffness: `K + E D_tt E'` is regular as soon as t resists every motion of the null space. The last block of its factor is
 //! `S + D_tt`, where S is the Schur complement of K on t. With the diagonal scaled to 1 the null vectors of S are those of K at t.
 //! Then some dofs of t are held in place of all springs: only the dense block of t changes.
@@ -10,24 +10,21 @@ use std::sync::Arc;
 use crate::body::digits::{Digits, FEWEST};
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
-use crate::body::last::{between_parts, spread, supported};
+use crate::body::last::{spread, supported};
 use crate::body::misfit::Misfit;
-use crate::body::null_space::{
-    largest, one_column_each, refuse_overflow, verified_by_parts, FreePart, Verified,
-};
+use crate::body::null_space::{exact, largest, refuse_overflow, Verified};
 use crate::body::part::{End, Soft};
 use crate::body::probe::{known_to, probe, Factor, MOST_ROUNDING, SINGULAR};
 use crate::body::soft::{are_resisted, known_to_entries, soft_motions};
-use crate::body::spectrum::{cut, may_be_weak, measured, to_measure, Ritz};
+use crate::body::spectrum::{cut, may_be_weak, measured, to_measure};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::Trailing;
 use crate::linalg::dense::spectrum::symmetric_eigen;
-use crate::linalg::graph::components;
 use crate::linalg::vector::ratio;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
-use crate::platform::memory::{copied, headroom, reserved, PRODUCTS};
+use crate::platform::memory::{headroom, PRODUCTS};
 
-/// Number of dofs eliminated last in each part, in the first attempt.
+/// Number of dofs eliminated last, in the first attempt.
 const LAST: usize = 24;
 /// Limit of this number.
 const MOST: usize = 400;
@@ -38,12 +35,9 @@ pub struct Search {
     k: Multiple,
     tolerance: f64,
     fixing: Option<Vec<usize>>,
-    /// The dofs t of every part, and all dofs of every part.
-    last: Vec<Vec<usize>>,
-    members: Vec<Vec<usize>>,
-    /// Entries of K between the parts.
-    between: Vec<usize>,
-    /// Number of dofs in t per part.
+    /// The dofs t, ascending.
+    last: Vec<usize>,
+    /// Number of dofs in t that are spread over the body.
     count: usize,
     /// Precision of the entries of K, if less than double precision.
     digits: Option<Digits>,
@@ -65,14 +59,9 @@ enum Attempt {
 impl Search {
     /// `fixing`: the dofs to hold in K+, if the host has given them.
     pub fn new(k: Multiple, tolerance: f64, fixing: Option<&[usize]>) -> Result<Self> {
-        let _room = headroom(k.order() * PER_DOF, "the connected parts of a body")?;
-        let (part_of, parts) = components(&k.matrix);
-        let mut members = vec![Vec::new(); parts];
-        part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
-        let mut last = vec![Vec::new(); parts];
-        fixing.unwrap_or_default().iter().for_each(|&dof| last[part_of[dof]].push(dof));
-        let between = between_parts(&k.matrix, &part_of)?;
-        Self::with(k, tolerance, fixing.map(<[usize]>::to_vec), (members, last, between), LAST)
+        let _room = headroom(k.order() * PER_DOF, "the null space of a body")?;
+        let last = fixing.unwrap_or_default().to_vec();
+        Self::with(k, tolerance, fixing.map(<[usize]>::to_vec), last, LAST)
     }
 
     /// `last`: dofs that t must include.
@@ -80,33 +69,17 @@ impl Search {
         k: Multiple,
         tolerance: f64,
         fixing: Option<Vec<usize>>,
-        (members, mut last, between): (Vec<Vec<usize>>, Vec<Vec<usize>>, Vec<usize>),
+        mut last: Vec<usize>,
         count: usize,
     ) -> Result<Self> {
-        for (members, last) in members.iter().zip(&mut last) {
-            last.extend(spread(members, count));
-            last.sort_unstable();
-            last.dedup();
-        }
-        let left_out = copied(&between, "the connected parts of a body")?;
-        let layout = Arc::new(Layout::Last { dofs: last.clone(), between: left_out });
+        last.extend(spread(k.order(), count));
+        last.sort_unstable();
+        last.dedup();
+        let layout = Arc::new(Layout::Last(last.clone()));
         let digits = Digits::of_least(&k.matrix, Digits::TOLD)?;
         let few = digits.filter(|digits| digits.are_few());
         let digits = digits.filter(|digits| !digits.are_few());
-        Ok(Self {
-            k,
-            tolerance,
-            fixing,
-            last,
-            members,
-            between,
-            count,
-            digits,
-            few,
-            misfit: None,
-            layout,
-            symbolic: None,
-        })
+        Ok(Self { k, tolerance, fixing, last, count, digits, few, misfit: None, layout, symbolic: None })
     }
 
     /// Notes that coordinates were given that do not fit.
@@ -115,8 +88,8 @@ impl Search {
     }
 
     pub fn analyse(&self) -> Result<Arc<Analysis>> {
-        let supported = supported(&self.k, &self.last, &self.between)?;
-        Ok(Arc::new(Analysis::ending(&self.k.matrix, &supported, &self.last.concat())?))
+        let supported = supported(&self.k, &self.last)?;
+        Ok(Arc::new(Analysis::ending(&self.k.matrix, &supported, &self.last)?))
     }
 
     /// Repeats with more dofs t until t resists every motion.
@@ -147,17 +120,15 @@ impl Search {
                 }
                 Attempt::Missed(dof) if 2 * self.count > MOST => {
                     let what = format!(
-                        "the null space could not be found with {} dofs of each part: give it, or coordinates",
+                        "the null space could not be found with {} dofs of a connected part: give it, or coordinates",
                         self.count
                     );
                     return Err(Error::new(Kind::NullSpace, what).dof(dof));
                 }
                 Attempt::Missed(dof) => {
-                    if let Some(part) = self.members.iter().position(|all| all.binary_search(&dof).is_ok()) {
-                        self.last[part].push(dof);
-                    }
-                    let (parts, digits) = ((self.members, self.last, self.between), self.digits);
-                    self = Self::with(self.k, self.tolerance, self.fixing, parts, 2 * self.count)?;
+                    self.last.push(dof);
+                    let digits = self.digits;
+                    self = Self::with(self.k, self.tolerance, self.fixing, self.last, 2 * self.count)?;
                     self.digits = self.digits.or(digits);
                 }
             }
@@ -165,7 +136,7 @@ impl Search {
     }
 
     fn attempt(&mut self, analysis: &Arc<Analysis>) -> Result<Attempt> {
-        let supported = supported(&self.k, &self.last, &self.between)?;
+        let supported = supported(&self.k, &self.last)?;
         let factor = match analysis.factorize(&supported, 1.0)? {
             Ok(factor) => factor,
             Err(breakdown) => return self.missed_or_indefinite(breakdown),
@@ -182,17 +153,13 @@ impl Search {
         }
         drop(supported);
         let soft = self.soft_as_written(&factor)?;
-        for ((last, members), part) in self.last.iter().zip(&self.members).zip(&soft) {
-            if 2 * part.vectors.cols > last.len() && last.len() < members.len() {
-                return Ok(Attempt::Missed(last[0]));
-            }
+        if 2 * soft.vectors.cols > self.last.len() && self.last.len() < self.k.order() {
+            return Ok(Attempt::Missed(self.last[0]));
         }
-        let vectors = self.extended(&factor, soft.iter().map(|part| part.vectors.clone()))?;
-        match self.inverse(factor, &soft, vectors) {
+        let vectors = self.extended(&factor, soft.vectors.clone())?;
+        match self.inverse(factor, soft, vectors) {
             Err(Error { kind: Kind::NullSpace, place, .. })
-                if place
-                    .dof
-                    .is_some_and(|dof| self.last.iter().all(|last| last.binary_search(&dof).is_err())) =>
+                if place.dof.is_some_and(|dof| self.last.binary_search(&dof).is_err()) =>
             {
                 Ok(Attempt::Missed(place.dof.unwrap_or(0)))
             }
@@ -200,8 +167,8 @@ impl Search {
         }
     }
 
-    fn end(&self, factor: &Cholesky, last: &[usize]) -> Result<End> {
-        let m = last.len();
+    fn end(&self, factor: &Cholesky) -> Result<End> {
+        let (last, m) = (&self.last[..], self.last.len());
         let mut schur = factor.trailing(last)?;
         let d = |i: usize| self.k.metric(last[i], 1.0);
         (0..m).for_each(|i| schur.set(i, i, schur.get(i, i) - d(i)));
@@ -213,7 +180,7 @@ impl Search {
 
     /// As `soft`. If K has negative stiffness along a motion, its entries are not exact: the motion is judged again with
     /// their digits.
-    fn soft_as_written(&mut self, factor: &Cholesky) -> Result<Vec<Soft>> {
+    fn soft_as_written(&mut self, factor: &Cholesky) -> Result<Soft> {
         match self.soft(factor) {
             Err(Error { kind: Kind::Indefinite, .. }) if self.digits.is_none() => {
                 self.digits = Digits::of_rounded(&self.k.matrix, FEWEST);
@@ -223,90 +190,63 @@ impl Search {
         }
     }
 
-    /// The null space of every part at t: from the eigenvalues at t if these decide it, otherwise from the softest
-    /// motions measured over the whole part.
-    fn soft(&mut self, factor: &Cholesky) -> Result<Vec<Soft>> {
-        const WHAT: &str = "the null space of a body";
-        let (mut ends, mut candidates) = (reserved(self.last.len(), WHAT)?, reserved(self.last.len(), WHAT)?);
-        for last in &self.last {
-            let end = self.end(factor, last)?;
-            candidates.push(self.candidates(&end, last)?);
-            ends.push(end);
-        }
-        let part = |(members, q): (_, &usize)| (Vec::as_slice(members), *q);
-        let parts: Vec<_> = self.members.iter().zip(&candidates).map(part).collect();
-        let first = ends.iter().zip(&candidates).map(|(end, q): (&End, _)| end.vectors.columns(0..*q));
-        let ritz = measured(&self.k, self.digits.or(self.few), &parts, self.extended(factor, first)?)?;
-        if ritz.iter().all(Ritz::is_exact) {
+    /// The null space at t: from the eigenvalues at t if these decide it, otherwise from the softest motions measured over
+    /// the whole body.
+    fn soft(&mut self, factor: &Cholesky) -> Result<Soft> {
+        let end = self.end(factor)?;
+        let first = end.vectors.columns(0..self.candidates(&end)?);
+        let ritz = measured(&self.k, self.digits.or(self.few), self.extended(factor, first)?)?;
+        if ritz.is_exact() {
             (self.digits, self.few) = (None, None);
         }
-        let parts = ends.into_iter().zip(&self.last).zip(ritz);
-        parts.map(|((end, last), ritz)| end.decided(self.digits, self.few, last, ritz)).collect()
+        end.decided(self.digits, self.few, &self.last, ritz)
     }
 
-    /// Number of motions to be measured over the whole part.
-    fn candidates(&self, end: &End, last: &[usize]) -> Result<usize> {
+    /// Number of motions to be measured over the whole body.
+    fn candidates(&self, end: &End) -> Result<usize> {
         let (values, cut) = (&end.values, cut(&end.values));
         if self.digits.is_some() || cut.is_none() {
             return Ok(to_measure(values, self.digits.or(self.few)));
         }
-        self.definite(values[0] / values[values.len() - 1].abs().max(1.0), end, last)?;
+        self.definite(values[0] / values[values.len() - 1].abs().max(1.0), end)?;
         let weak = cut.is_some_and(|(dimension, _)| may_be_weak(values, dimension));
         Ok(if weak || self.few.is_some() { to_measure(values, self.few) } else { 0 })
     }
 
-    /// The error if the stiffness of the softest motion of a part is negative beyond rounding.
-    fn definite(&self, relative_pivot: f64, end: &End, last: &[usize]) -> Result<()> {
-        let dof = last[largest(end.vectors.col(0), |_| 1.0)];
+    /// The error if the stiffness of the softest motion is negative beyond rounding.
+    fn definite(&self, relative_pivot: f64, end: &End) -> Result<()> {
+        let dof = self.last[largest(end.vectors.col(0), |_| 1.0)];
         (Breakdown { dof, relative_pivot }).refused().map_or(Ok(()), Err)
     }
 
-    /// Motions at t multiplied by D^1/2, extended to the other dofs without forces there: column c has motion c of every
-    /// part.
-    fn extended(&self, factor: &Cholesky, motions: impl Iterator<Item = Matrix>) -> Result<Matrix> {
-        let mut ends = reserved(self.last.len(), "a null space")?;
-        let root = |dof: usize| self.k.metric(dof, 1.0).sqrt();
-        for (mut end, last) in motions.zip(&self.last) {
-            for j in 0..end.cols {
-                end.col_mut(j).iter_mut().zip(last).for_each(|(v, &dof)| *v /= root(dof));
-            }
-            ends.push(end);
+    /// Motions at t multiplied by D^1/2, extended to the other dofs without forces there.
+    fn extended(&self, factor: &Cholesky, mut motions: Matrix) -> Result<Matrix> {
+        for j in 0..motions.cols {
+            let at_t = motions.col_mut(j).iter_mut().zip(&self.last);
+            at_t.for_each(|(v, &dof)| *v /= self.k.metric(dof, 1.0).sqrt());
         }
-        let parts: Vec<_> = self.last.iter().map(Vec::as_slice).zip(&ends).collect();
-        factor.extended(&parts)
+        factor.extended(&self.last, &motions)
     }
 
-    /// K+ from this factor: r of the dofs t held, the others without springs. `vectors`: null vectors j of all parts in
-    /// column j.
-    fn inverse(&self, factor: Cholesky, soft: &[Soft], vectors: Matrix) -> Result<GeneralizedInverse> {
-        let (n, r) = (self.k.order(), soft.iter().map(|part| part.vectors.cols).sum::<usize>());
-        let _room =
-            headroom((2 * r + 8 * vectors.cols + 24) * n * size_of::<f64>() + PRODUCTS, "a null space")?;
-        let root = self.k.roots()?;
-        let fixing = self.fixing_of(soft, &vectors, &root)?;
-        let parts: Vec<Trailing<'_>> = (self.last.iter().zip(soft).zip(&fixing))
-            .map(|((dofs, part), held)| Trailing { dofs, schur: &part.schur, held })
-            .collect();
-        let factor = factor.holding(&parts)?.map_err(|dof| {
+    /// K+ from this factor: r of the dofs t held, the others without springs. `vectors`: the null vectors.
+    fn inverse(&self, factor: Cholesky, soft: Soft, vectors: Matrix) -> Result<GeneralizedInverse> {
+        let (n, r) = (self.k.order(), vectors.cols);
+        let _room = headroom((10 * r + 24) * n * size_of::<f64>() + PRODUCTS, "a null space")?;
+        let fixing = self.fixing_of(&soft, &vectors)?;
+        let last = Trailing { dofs: &self.last, schur: &soft.schur, held: &fixing };
+        let factor = factor.holding(&last)?.map_err(|dof| {
             let what = "the stiffness matrix is singular with the fixing dofs of its null space held";
             Error::new(Kind::NullSpace, what).dof(dof)
         })?;
         let factor = Factor::Own(Arc::new(factor));
         let vectors = self.resisted_evenly(&factor, vectors)?;
-        let part = |(dofs, part): (_, &Soft)| {
-            let tolerance = if part.weak > 0 { f64::INFINITY } else { self.tolerance.max(part.rounding) };
-            FreePart { dofs: Vec::as_slice(dofs), count: part.vectors.cols, tolerance }
-        };
-        let parts: Vec<FreePart<'_>> = self.members.iter().zip(soft).map(part).collect();
-        let Verified { basis, .. } = verified_by_parts(&self.k, &vectors, &parts)?;
-        let counts: Vec<_> = parts.iter().map(|part| (part.dofs, part.count)).collect();
-        let (basis, stiffness) = self.resisted_softly(&factor, soft, basis, &counts)?;
-        let null_space = one_column_each(&basis, &counts)?;
-        let fixing = fixing.concat();
-        let softness = probe(&factor, &self.k, &fixing, null_space.cols)?;
+        let tolerance = if soft.weak > 0 { f64::INFINITY } else { self.tolerance.max(soft.rounding) };
+        let Verified { basis, .. } = exact(&self.k, &vectors, tolerance)?;
+        let (null_space, stiffness) = self.resisted_softly(&factor, &soft, basis)?;
+        let softness = probe(&factor, &self.k, &fixing, r)?;
         let error = match stiffness.is_empty() {
-            true => known_to(&factor, &self.k, &basis, &counts)?,
-            false => known_to_entries(&factor, &self.k, &basis)?,
+            true => known_to(&factor, &self.k, &null_space)?,
+            false => known_to_entries(&factor, &self.k, &null_space)?,
         };
         Ok(GeneralizedInverse {
             null_space,
@@ -314,10 +254,10 @@ impl Search {
             rounding: error.min(MOST_ROUNDING),
             error,
             fixing,
-            gap: soft.iter().map(|part| part.gap).reduce(f64::min),
+            gap: Some(soft.gap),
             softness,
             misfit: None,
-            doubts: soft.iter().filter_map(|part| part.doubt).collect(),
+            doubt: soft.doubt,
             factor,
             carried: None,
             near: None,
@@ -326,18 +266,11 @@ impl Search {
 
     /// Soft motions and their stiffness, if weak springs hold some of the vectors or no gap separates these from a null
     /// space.
-    fn resisted_softly(
-        &self,
-        factor: &Factor,
-        soft: &[Soft],
-        basis: Matrix,
-        parts: &[(&[usize], usize)],
-    ) -> Result<(Matrix, Vec<f64>)> {
-        let weak = soft.iter().any(|part| part.weak > 0);
-        if !weak && (self.digits.is_some() || !are_resisted(&self.k, &basis, parts)?) {
+    fn resisted_softly(&self, factor: &Factor, soft: &Soft, basis: Matrix) -> Result<(Matrix, Vec<f64>)> {
+        if soft.weak == 0 && (self.digits.is_some() || !are_resisted(&self.k, &basis)?) {
             return Ok((basis, Vec::new()));
         }
-        let (motions, mut stiffness) = soft_motions(factor, &self.k, basis, parts)?;
+        let (motions, mut stiffness) = soft_motions(factor, &self.k, basis)?;
         // negative stiffness this small is rounding, since the host has given no soft motions
         stiffness.iter_mut().for_each(|stiffness| *stiffness = stiffness.max(0.0));
         Ok((motions, stiffness))
@@ -352,40 +285,28 @@ impl Search {
         let (mut image, _) = self.k.mul_columns(&vectors)?;
         for c in 0..vectors.cols {
             let (r, image) = (vectors.col_mut(c), image.col_mut(c));
-            for dofs in &self.members {
-                let work = |of: &dyn Fn(usize) -> f64| dofs.iter().map(|&i| r[i] * of(i)).sum::<f64>();
-                let theta = ratio(work(&|i| image[i]), work(&|i| self.k.metric(i, 1.0) * r[i]));
-                dofs.iter().for_each(|&i| image[i] -= theta * self.k.metric(i, 1.0) * r[i]);
-            }
+            let work = |of: &dyn Fn(usize) -> f64| (0..r.len()).map(|i| r[i] * of(i)).sum::<f64>();
+            let theta = ratio(work(&|i| image[i]), work(&|i| self.k.metric(i, 1.0) * r[i]));
+            (0..r.len()).for_each(|i| image[i] -= theta * self.k.metric(i, 1.0) * r[i]);
             factor.solve(image)?;
             r.iter_mut().zip(image.iter()).for_each(|(r, x)| *r -= x);
         }
         Ok(vectors)
     }
 
-    /// The dofs to hold in every part.
-    fn fixing_of(&self, soft: &[Soft], vectors: &Matrix, root: &[f64]) -> Result<Vec<Vec<usize>>> {
+    /// The dofs to hold.
+    fn fixing_of(&self, soft: &Soft, vectors: &Matrix) -> Result<Vec<usize>> {
         if let Some(given) = &self.fixing {
-            let counts = soft.iter().map(|part| part.vectors.cols);
-            let parts: Vec<_> = self.members.iter().map(Vec::as_slice).zip(counts).collect();
-            let given = given_dofs(&one_column_each(vectors, &parts)?, root, given)?;
-            let among = |last: &Vec<usize>| given.iter().copied().filter(|dof| last.contains(dof)).collect();
-            return Ok(self.last.iter().map(among).collect());
+            return given_dofs(vectors, &self.k.roots()?, given);
         }
-        let chosen = |(part, last): (&Soft, &Vec<usize>)| {
-            let ones = vec![1.0; last.len()];
-            let chosen = fixing_dofs(&part.vectors, &ones)?;
-            Ok(chosen.into_iter().map(|at| last[at]).collect())
-        };
-        soft.iter().zip(&self.last).map(chosen).collect()
+        let chosen = fixing_dofs(&soft.vectors, &vec![1.0; self.last.len()])?;
+        Ok(chosen.into_iter().map(|at| self.last[at]).collect())
     }
 
     /// A pivot of `K + E D_tt E'` that is not positive: K is indefinite, or t does not resist some null vector. The
-    /// latter is excluded if t has all dofs of the part.
+    /// latter is excluded if t has all dofs.
     fn missed_or_indefinite(&mut self, Breakdown { dof, relative_pivot }: Breakdown) -> Result<Attempt> {
-        let mut parts = self.members.iter().zip(&self.last);
-        let whole =
-            parts.any(|(members, last)| members.len() == last.len() && last.binary_search(&dof).is_ok());
+        let whole = self.last.len() == self.k.order();
         let relative_pivot = if whole { 2.0 * relative_pivot - 1.0 } else { relative_pivot };
         let Some(error) = (Breakdown { dof, relative_pivot }).refused() else {
             return Ok(Attempt::Missed(dof));

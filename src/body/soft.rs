@@ -9,87 +9,49 @@
 //! unknowns, where K+ is 0: for `u = K+ (f - B'l) + R a` they resist a with the forces `lambda_j a_j`, and no other
 //! motion.
 
-use crate::body::null_space::{orthonormal_by_parts, FreePart, ROUNDING};
+use crate::body::null_space::{orthonormal, ROUNDING};
 use crate::body::probe::{Factor, MOST_ERROR, SAMPLE};
 use crate::body::spectrum::symmetric;
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
-use crate::linalg::graph::{components, joined};
 use crate::linalg::random::Random;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::norm_max;
 use crate::linalg::{Matrix, Multiple};
-use crate::platform::memory::{filled, zeros};
+use crate::platform::memory::filled;
 
 const WHAT: &str = "the soft motions of a body";
-
-/// Dofs of every part and its number of motions, which are in the first columns.
-type Parts<'a> = [(&'a [usize], usize)];
-
-/// Motions of parts that neither stiffness nor motions connect, in shared columns: K couples no motions of different
-/// parts.
-pub struct Apart {
-    pub vectors: Matrix,
-    /// Dofs and number of motions of each part.
-    pub parts: Vec<(Vec<usize>, usize)>,
-}
-
-impl Apart {
-    /// `motions`: n x r, one per column.
-    pub fn of(k: &Multiple, motions: &Matrix) -> Result<Self> {
-        let (part_of, count) = components(&k.matrix);
-        let moved =
-            |j: usize| (0..motions.rows).filter(move |&i| motions.get(i, j) != 0.0).map(|i| part_of[i]);
-        let (group_of, groups) = joined(count, (0..motions.cols).map(moved));
-        let mut parts = vec![(Vec::new(), 0); groups];
-        part_of.iter().enumerate().for_each(|(i, &part)| parts[group_of[part]].0.push(i));
-        let mut vectors = Matrix::zeros(motions.rows, 0)?;
-        let empty = zeros(motions.rows, WHAT)?;
-        for j in 0..motions.cols {
-            let (dofs, count) = &mut parts[moved(j).next().map_or(0, |part| group_of[part])];
-            if vectors.cols == *count {
-                vectors.push_col(&empty);
-            }
-            dofs.iter().for_each(|&i| vectors.set(i, *count, motions.get(i, j)));
-            *count += 1;
-        }
-        Ok(Self { vectors, parts })
-    }
-}
 
 /// The resistance of K to motions.
 struct Resistance {
     /// `K R`, rounded once.
     image: Matrix,
-    /// `64 eps |r|'|K||r|`, part after part: smaller values of `r'K r` are rounding.
+    /// `64 eps |r|'|K||r|`: smaller values of `r'K r` are rounding.
     noise: Vec<f64>,
 }
 
 /// Whether K resists some of the motions by more than rounding.
-pub fn are_resisted(k: &Multiple, r: &Matrix, parts: &Parts) -> Result<bool> {
-    let found = Resistance::of(k, r, parts)?;
-    Ok(found.diagonal(r, parts).iter().zip(&found.noise).any(|(stiffness, noise)| *stiffness > *noise))
+pub fn are_resisted(k: &Multiple, r: &Matrix) -> Result<bool> {
+    let found = Resistance::of(k, r)?;
+    let is_resisted = found.diagonal(r).zip(&found.noise).any(|(stiffness, noise)| stiffness > *noise);
+    Ok(is_resisted)
 }
 
-/// R with the span of `vectors` at the held unknowns, `R'DR = I` and R'K R diagonal in every part; and lambda, part after
-/// part, 0 if it is rounding.
-pub fn soft_motions(
-    factor: &Factor,
-    k: &Multiple,
-    vectors: Matrix,
-    parts: &Parts,
-) -> Result<(Matrix, Vec<f64>)> {
+/// R with the span of `vectors` at the held unknowns, `R'DR = I` and `R'K R = diag(lambda)`; and lambda, 0 if it is
+/// rounding.
+pub fn soft_motions(factor: &Factor, k: &Multiple, vectors: Matrix) -> Result<(Matrix, Vec<f64>)> {
     let r = corrected(factor, k, vectors)?;
-    let mut r = corrected(factor, k, orthonormal(k, &r, parts)?)?;
-    let found = Resistance::of(k, &r, parts)?;
-    for &(dofs, count) in parts.iter().filter(|part| part.1 > 0) {
-        let (_, turn) = symmetric_eigen(&found.stiffness(&r, dofs, count)?)?;
-        r.turn_rows(dofs, &turn);
+    let mut r = corrected(factor, k, orthonormal(k, &r)?)?;
+    let found = Resistance::of(k, &r)?;
+    if r.cols > 0 {
+        let (_, turn) = symmetric_eigen(&found.stiffness(&r)?)?;
+        r.turn_rows(&turn);
     }
-    let found = Resistance::of(k, &r, parts)?;
-    let known = found.diagonal(&r, parts).into_iter().zip(&found.noise);
+    let found = Resistance::of(k, &r)?;
+    let known = found.diagonal(&r).zip(&found.noise);
     let lambda = known.map(|(stiffness, noise)| if stiffness.abs() > *noise { stiffness } else { 0.0 });
-    Ok((r, lambda.collect()))
+    let lambda = lambda.collect();
+    Ok((r, lambda))
 }
 
 /// `R - K+ K R`, which is `[-K_kk^-1 K_kx; I] R_x` for any values of R at the other unknowns.
@@ -115,12 +77,6 @@ pub fn known_to_entries(factor: &Factor, k: &Multiple, r: &Matrix) -> Result<f64
     Ok(worst.min(MOST_ERROR))
 }
 
-/// A basis of the span with `R'DR = I` in every part.
-fn orthonormal(k: &Multiple, r: &Matrix, parts: &Parts) -> Result<Matrix> {
-    let part = |&(dofs, count): &(_, usize)| FreePart { dofs, count, tolerance: 0.0 };
-    orthonormal_by_parts(k, r, &parts.iter().map(part).collect::<Vec<_>>())
-}
-
 /// `K v` in double-double arithmetic: for a soft motion the result is far smaller than its terms.
 fn product(k: &Multiple, v: &[f64]) -> Result<Vec<f64>> {
     let mut image = filled(v.len(), Twofold::default(), WHAT)?;
@@ -129,36 +85,31 @@ fn product(k: &Multiple, v: &[f64]) -> Result<Vec<f64>> {
 }
 
 impl Resistance {
-    fn of(k: &Multiple, r: &Matrix, parts: &Parts) -> Result<Self> {
+    fn of(k: &Multiple, r: &Matrix) -> Result<Self> {
         let (mut image, terms) = k.mul_columns(r)?;
         for j in 0..r.cols {
             image.col_mut(j).copy_from_slice(&product(k, r.col(j))?);
         }
-        let size = |dofs: &[usize], j: usize| -> f64 {
-            dofs.iter().map(|&i| r.get(i, j).abs() * terms.get(i, j)).sum()
-        };
-        let noise = parts.iter().flat_map(|&(dofs, count)| (0..count).map(move |j| ROUNDING * size(dofs, j)));
-        Ok(Self { noise: noise.collect(), image })
+        let size =
+            |j: usize| r.col(j).iter().zip(terms.col(j)).map(|(v, terms)| v.abs() * terms).sum::<f64>();
+        Ok(Self { noise: (0..r.cols).map(|j| ROUNDING * size(j)).collect(), image })
     }
 
-    /// `r_a'K r_b` over the dofs of a part.
-    fn entry(&self, r: &Matrix, dofs: &[usize], a: usize, b: usize) -> f64 {
+    /// `r_a'K r_b`
+    fn entry(&self, r: &Matrix, a: usize, b: usize) -> f64 {
         let mut sum = Twofold::default();
-        dofs.iter().for_each(|&i| sum.add_product(r.get(i, a), self.image.get(i, b)));
+        r.col(a).iter().zip(self.image.col(b)).for_each(|(v, image)| sum.add_product(*v, *image));
         sum.value()
     }
 
-    /// `R'K R` of a part.
-    fn stiffness(&self, r: &Matrix, dofs: &[usize], count: usize) -> Result<Matrix> {
-        symmetric(count, |a, b| self.entry(r, dofs, a, b))
+    /// `R'K R`
+    fn stiffness(&self, r: &Matrix) -> Result<Matrix> {
+        symmetric(r.cols, |a, b| self.entry(r, a, b))
     }
 
-    /// `r_j'K r_j`, part after part.
-    fn diagonal(&self, r: &Matrix, parts: &Parts) -> Vec<f64> {
-        let of = |&(dofs, count): &(&[usize], usize)| -> Vec<f64> {
-            (0..count).map(|j| self.entry(r, dofs, j, j)).collect()
-        };
-        parts.iter().flat_map(of).collect()
+    /// `r_j'K r_j`
+    fn diagonal<'a>(&'a self, r: &'a Matrix) -> impl Iterator<Item = f64> + 'a {
+        (0..r.cols).map(|j| self.entry(r, j, j))
     }
 }
 

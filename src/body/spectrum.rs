@@ -10,7 +10,6 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::vector::dot;
 use crate::linalg::{Matrix, Multiple};
-use crate::platform::memory::reserved;
 
 /// An eigenvalue of the scaled S may belong to the null space if it is below this part of the largest.
 const SOFT: f64 = 1e-11;
@@ -126,40 +125,26 @@ pub fn to_measure(values: &[f64], digits: Option<Digits>) -> usize {
     }
 }
 
-/// Measures the motions of some parts, in the first columns of `x`. `parts`: dofs and number of motions of each part; no
-/// entry of K couples two parts.
-pub fn measured(
-    k: &Multiple,
-    digits: Option<Digits>,
-    parts: &[(&[usize], usize)],
-    mut x: Matrix,
-) -> Result<Vec<Ritz>> {
+/// Measures the motions x, n x q.
+pub fn measured(k: &Multiple, digits: Option<Digits>, mut x: Matrix) -> Result<Ritz> {
+    let (n, q) = (x.rows, x.cols);
     let (image, _) = k.mul_columns(&x)?;
-    let mut turns = reserved(parts.len(), "the softest motions of a body")?;
-    for &(dofs, q) in parts {
-        let metric =
-            |a: usize, b: usize| dofs.iter().map(|&i| x.get(i, a) * k.metric(i, 1.0) * x.get(i, b)).sum();
-        let stiff = |a: usize, b: usize| dofs.iter().map(|&i| x.get(i, a) * image.get(i, b)).sum();
-        let turn = turned(&symmetric(q, metric)?, &symmetric(q, stiff)?)?;
-        x.turn_rows(dofs, &turn);
-        turns.push(turn);
-    }
+    let metric = |a: usize, b: usize| (0..n).map(|i| x.get(i, a) * k.metric(i, 1.0) * x.get(i, b)).sum();
+    let stiff = |a: usize, b: usize| (0..n).map(|i| x.get(i, a) * image.get(i, b)).sum();
+    let turn = turned(&symmetric(q, metric)?, &symmetric(q, stiff)?)?;
+    x.turn_rows(&turn);
     let (image, terms) = k.mul_columns(&x)?;
-    let mut all = reserved(parts.len(), "the softest motions of a body")?;
-    for (&(dofs, q), turn) in parts.iter().zip(turns) {
-        let work = |of: &Matrix, c: usize, size: fn(f64) -> f64| {
-            dofs.iter().map(|&i| size(x.get(i, c)) * of.get(i, c)).sum::<f64>()
-        };
-        let values = (0..q).map(|c| work(&image, c, |v| v)).collect();
-        let products: Vec<f64> = (0..q).map(|c| KNOWN * work(&terms, c, f64::abs)).collect();
-        let mut noise = products.clone();
-        if let Some(digits) = digits {
-            let entries = digits.noise(&k.matrix, dofs, q, |i, c| x.get(i, c))?;
-            noise.iter_mut().zip(entries).for_each(|(noise, e)| *noise += DEVIATIONS * k.by * e);
-        }
-        all.push(Ritz { values, noise, products, turn });
+    let work = |of: &Matrix, c: usize, size: fn(f64) -> f64| -> f64 {
+        x.col(c).iter().zip(of.col(c)).map(|(x, v)| size(*x) * v).sum()
+    };
+    let values = (0..q).map(|c| work(&image, c, |v| v)).collect();
+    let products: Vec<f64> = (0..q).map(|c| KNOWN * work(&terms, c, f64::abs)).collect();
+    let mut noise = products.clone();
+    if let Some(digits) = digits {
+        let entries = digits.noise(&k.matrix, &x)?;
+        noise.iter_mut().zip(entries).for_each(|(noise, e)| *noise += DEVIATIONS * k.by * e);
     }
-    Ok(all)
+    Ok(Ritz { values, noise, products, turn })
 }
 
 /// The symmetric part of q x q entries.

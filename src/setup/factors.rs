@@ -313,7 +313,7 @@ impl Prepared {
                 };
                 log.say(LogLevel::Result, text)?;
             }
-            for doubt in &kplus.doubts {
+            if let Some(doubt) = &kplus.doubt {
                 log.say(LogLevel::Result, || format!("warning: body {number}: {doubt}"))?;
             }
         }

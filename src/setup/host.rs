@@ -67,7 +67,7 @@ fn host_inverse(body: &Body, tolerance: f64) -> Result<GeneralizedInverse> {
     }
     let missing = || Error::new(Kind::State, "the null space has not been given");
     let coordinates = body.coordinates.as_ref().ok_or_else(missing)?;
-    let vectors = coordinates.rigid_modes_of_one(|dof| k.operator.diagonal(dof) > 0.0)?;
+    let vectors = coordinates.rigid_modes(|dof| k.operator.diagonal(dof) > 0.0)?;
     let candidates = NullSpaceInput { vectors, modes: Modes::Candidates };
     let made = GeneralizedInverse::of_host(k, &candidates, tolerance)?;
     match made.misfit.filter(|_| body.coordinate_modes == Modes::Exact) {

@@ -56,13 +56,13 @@ fn plan(body: &Body, tolerance: f64, is_piece: bool) -> Result<Plan> {
     let Some(coordinates) = &body.coordinates else {
         return GeneralizedInverse::search(k, tolerance, fixing);
     };
-    let rigid = coordinates.rigid_modes(&k.matrix)?;
+    let rigid = coordinates.rigid_modes(|i| k.matrix.diagonal(i) > 0.0)?;
     let planned = match body.coordinate_modes {
         Modes::Soft => GeneralizedInverse::plan_soft(k, &rigid, fixing)?,
         modes => GeneralizedInverse::plan_near(k, &rigid, modes, tolerance, fixing)?,
     };
     if is_piece {
-        return planned.or_search(tolerance).carrying(&rigid);
+        return Ok(planned.or_search(tolerance).carrying(rigid));
     }
     Ok(planned)
 }

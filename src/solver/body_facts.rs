@@ -134,7 +134,7 @@ impl Problem {
         Some(Factors {
             null_space,
             gap: self.inverses(body).filter_map(|of| of.kplus.gap.filter(|_| !is_cut)).reduce(f64::min),
-            doubts: self.inverses(body).flat_map(|of| of.kplus.doubts.iter().cloned()).collect(),
+            doubts: self.inverses(body).filter_map(|of| of.kplus.doubt).collect(),
             entries: self.inverses(body).map(|of| of.kplus.entries()).sum(),
             bytes: self.inverses(body).map(|of| of.bytes).sum(),
             shared_with: others.clone().find(|&p| !is_cut && p != body && address(p) == own),

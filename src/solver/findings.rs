@@ -135,7 +135,7 @@ pub fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
 
 /// Bodies with doubts about their null spaces.
 fn doubtful(model: &Model, prepared: &Prepared) -> Vec<usize> {
-    let doubts = |p: &usize| prepared.inverse(model, *p).is_some_and(|of| !of.kplus.doubts.is_empty());
+    let doubts = |p: &usize| prepared.inverse(model, *p).is_some_and(|of| of.kplus.doubt.is_some());
     (0..model.bodies.len()).filter(doubts).collect()
 }
 

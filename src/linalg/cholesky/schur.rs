@@ -7,7 +7,7 @@ use crate::platform::memory::{copied, zeros};
 
 const WHAT: &str = "the end of an elimination";
 
-/// Dofs of one connected part, eliminated last in this order; the pattern couples all of them.
+/// Dofs eliminated last in this order; the pattern couples all of them.
 pub struct Trailing<'a> {
     pub dofs: &'a [usize],
     /// Their Schur complement, m x m, to be factorised again.
@@ -25,30 +25,28 @@ impl Cholesky {
         Matrix::from_fn(m, m, |j, k| (0..=j.min(k)).map(|q| l.get(j, q) * l.get(k, q)).sum())
     }
 
-    /// The factor with the trailing dofs of every part factorised again and some of them held. `Err`: a dof at which the
-    /// remaining block is not positive definite.
-    pub fn holding(mut self, parts: &[Trailing<'_>]) -> Result<std::result::Result<Self, usize>> {
-        let mut held: Vec<usize> = parts.iter().flat_map(|part| part.held.iter().copied()).collect();
+    /// The factor with the trailing dofs factorised again and some of them held. `Err`: a dof at which the remaining block
+    /// is not positive definite.
+    pub fn holding(mut self, last: &Trailing) -> Result<std::result::Result<Self, usize>> {
+        let Trailing { dofs, schur, held } = last;
+        let (m, mut held) = (dofs.len(), held.to_vec());
         held.sort_unstable();
         self.clear_rows(&held)?;
-        for part in parts {
-            let m = part.dofs.len();
-            let mut l = Matrix { rows: m, cols: m, data: copied(&part.schur.data, WHAT)? };
-            for k in (0..m).filter(|&k| part.held.contains(&part.dofs[k])) {
-                (0..m).for_each(|i| {
-                    l.set(i, k, 0.0);
-                    l.set(k, i, 0.0);
-                });
-                l.set(k, k, 1.0);
-            }
-            if let Err(at) = cholesky_in_place(&mut l) {
-                return Ok(Err(part.dofs[at]));
-            }
-            for k in 0..m {
-                for j in k..m {
-                    if let Some(at) = self.entry(part.dofs[j], part.dofs[k]) {
-                        self.values[at] = l.get(j, k);
-                    }
+        let mut l = Matrix { rows: m, cols: m, data: copied(&schur.data, WHAT)? };
+        for k in (0..m).filter(|&k| held.binary_search(&dofs[k]).is_ok()) {
+            (0..m).for_each(|i| {
+                l.set(i, k, 0.0);
+                l.set(k, i, 0.0);
+            });
+            l.set(k, k, 1.0);
+        }
+        if let Err(at) = cholesky_in_place(&mut l) {
+            return Ok(Err(dofs[at]));
+        }
+        for k in 0..m {
+            for j in k..m {
+                if let Some(at) = self.entry(dofs[j], dofs[k]) {
+                    self.values[at] = l.get(j, k);
                 }
             }
         }
@@ -56,18 +54,15 @@ impl Cholesky {
         Ok(Ok(self))
     }
 
-    /// Displacements without forces outside the trailing dofs: given `x_t` (m x r), `x_i = -K_ii^-1 K_it x_t`. Parts
-    /// share no entry of K: column c has motion c of all parts.
-    pub fn extended(&self, parts: &[(&[usize], &Matrix)]) -> Result<Matrix> {
+    /// Displacements without forces outside the trailing dofs t: given `x_t` (m x r), `x_i = -K_ii^-1 K_it x_t`.
+    pub fn extended(&self, dofs: &[usize], given: &Matrix) -> Result<Matrix> {
         let order = &self.analysis.order;
-        let (n, columns) = (order.len(), parts.iter().map(|part| part.1.cols).max().unwrap_or(0));
+        let (n, columns) = (order.len(), given.cols);
         let mut y = Matrix::zeros(n, columns)?;
-        for (dofs, given) in parts {
-            for (k, &dof) in dofs.iter().enumerate() {
-                let row = self.analysis.position[dof];
-                for (j, at) in (k..dofs.len()).filter_map(|j| Some((j, self.entry(dofs[j], dof)?))) {
-                    (0..given.cols).for_each(|c| y.data[row + c * n] += self.values[at] * given.get(j, c));
-                }
+        for (k, &dof) in dofs.iter().enumerate() {
+            let row = self.analysis.position[dof];
+            for (j, at) in (k..dofs.len()).filter_map(|j| Some((j, self.entry(dofs[j], dof)?))) {
+                (0..columns).for_each(|c| y.data[row + c * n] += self.values[at] * given.get(j, c));
             }
         }
         let mut workspace = self.workspace()?;

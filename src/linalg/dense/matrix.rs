@@ -67,9 +67,9 @@ impl Matrix {
     }
 
     /// `A T` in these rows, in the first columns; T is square.
-    pub fn turn_rows(&mut self, rows: &[usize], turn: &Matrix) {
+    pub fn turn_rows(&mut self, turn: &Matrix) {
         let mut row = vec![0.0; turn.cols];
-        for &i in rows {
+        for i in 0..self.rows {
             (0..turn.cols)
                 .for_each(|b| row[b] = (0..turn.rows).map(|a| self.get(i, a) * turn.get(a, b)).sum());
             (0..turn.cols).for_each(|b| self.set(i, b, row[b]));
