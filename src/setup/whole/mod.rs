@@ -72,11 +72,9 @@ impl Whole {
             let (body, is_cut) = (parts.parts[part].body, model.is_piece(part));
             if !is_cut || bodies.last() != Some(&body) {
                 let unknowns = if is_cut { parts.offsets[body + 1] - parts.offsets[body] } else { own.len() };
-                (
-                    bodies.push(body),
-                    part_of.push((!is_cut).then_some(part)),
-                    ranges.push(end..end + unknowns),
-                );
+                bodies.push(body);
+                part_of.push((!is_cut).then_some(part));
+                ranges.push(end..end + unknowns);
                 end += unknowns;
             }
             let start = ranges.last().map_or(0, |range| range.start);

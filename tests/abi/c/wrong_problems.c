@@ -83,12 +83,13 @@ static void products_that_overflow(feti_problem *p)
     OK(give_block_mode(p));
 }
 
-/* Two pairs that nothing joins have two motions; one of them alone passes K R = 0. */
+/* Two pairs that nothing joins have two motions; one of them alone passes K R = 0. One vector that moves both pairs gives both. */
 static void missing_mode(void)
 {
     const int32_t ptr[5] = { 0, 1, 3, 4, 6 }, col[6] = { 0, 0, 1, 2, 2, 3 };
     const double val[6] = { 4.0, -4.0, 4.0, 4.0, -4.0, 4.0 };
-    const double one[4] = { 1.0, 1.0, 1.0, 1.0 }, both[8] = { 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0 };
+    const double one[4] = { 1.0, 1.0, 0.0, 0.0 }, both[8] = { 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0 };
+    const double all[4] = { 1.0, 1.0, 1.0, 1.0 };
     const int32_t row_ptr[3] = { 0, 1, 2 }, dof[2] = { 0, 2 };
     const double down[2] = { -1.0, -1.0 }, load[4] = { 0.0, -1.0, 0.0, -3.0 };
     double lambda[2] = { 0 };
@@ -101,6 +102,8 @@ static void missing_mode(void)
     OK(feti_body_load(p, 0, 4, load));
     OK(feti_rows_add_i32(p, FETI_INEQUALITY, 2, row_ptr, NULL, dof, down, 0, NULL, NULL));
     refused(p, FETI_NULL_SPACE, 0, or_solve(p, feti_body_null_space(p, 0, 1, 4, one, 4, FETI_EXACT)), "a missing mode");
+    OK(feti_body_null_space(p, 0, 1, 4, all, 4, FETI_EXACT));
+    OK(feti_solve(p, NULL));
     OK(feti_body_null_space(p, 0, 2, 4, both, 4, FETI_EXACT));
     OK(feti_solve(p, NULL));
     OK(feti_multipliers(p, FETI_INEQUALITY, 2, lambda));
