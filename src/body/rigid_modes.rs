@@ -91,6 +91,15 @@ impl Coordinates {
         Ok(modes)
     }
 
+    /// The largest edge of the box around all dofs.
+    pub fn length(&self) -> f64 {
+        let along = |k: usize| {
+            let ends = self.place.iter().map(|place| place[k]);
+            ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.fold(f64::INFINITY, f64::min)
+        };
+        (0..3).map(along).fold(0.0, f64::max)
+    }
+
     /// The rigid motion of v, one entry per dof: velocity of the origin (length) and rotation about the axes, of least
     /// size if v does not determine it. `None` if v is not a rigid motion of the whole body.
     pub fn rigid_motion(&self, v: &[f64]) -> Option<[f64; 6]> {

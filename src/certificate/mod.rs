@@ -26,6 +26,7 @@ use crate::constraints::{FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::Matrix;
 
+pub use crate::linalg::vector::NOISE;
 use deformation::Deformation;
 use energy::Energies;
 pub use entry::{Certificate, Entry};
@@ -33,9 +34,6 @@ use field::Field;
 use forces::Forces;
 pub use grounded::grounded;
 use rows::Measured;
-
-/// Rounding errors of a sum, relative to its terms.
-pub const NOISE: f64 = 64.0 * f64::EPSILON;
 
 /// One island in terms of the host's data; its unknowns are those of its bodies one after the other.
 #[derive(Clone)]

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::constraints::{RowKind, RowSet, RowsInput};
+use crate::constraints::{RowKind, RowSet, RowsInput, SHORT};
 use crate::error::{Error, Result, INDEX};
 use crate::platform::memory::filled;
 
@@ -252,10 +252,10 @@ fn length(rows: &RowSet, i: usize) -> f64 {
     rows.matrix.row(i).map(|(_, v)| v * v).sum::<f64>().sqrt()
 }
 
-/// Rows without entries have no length to compare.
-fn check_factors(lengths: impl Iterator<Item = f64>, node: usize) -> Result<()> {
-    let (mut least, mut most) = (f64::INFINITY, 0.0f64);
-    lengths.filter(|length| *length > 0.0).for_each(|v| (least, most) = (least.min(v), most.max(v)));
+/// Rows without entries, and rows so short that they are rounding, have no length to compare.
+fn check_factors(lengths: impl Iterator<Item = f64> + Clone, node: usize) -> Result<()> {
+    let most = lengths.clone().fold(0.0, f64::max);
+    let least = lengths.filter(|length| *length > SHORT * most).fold(f64::INFINITY, f64::min);
     if most <= FACTORS * least {
         return Ok(());
     }

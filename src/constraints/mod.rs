@@ -7,6 +7,7 @@
 
 mod accumulator;
 mod decoupling;
+mod entries;
 mod friction;
 mod grouping;
 mod kind;
@@ -18,11 +19,15 @@ pub use kind::RowKind;
 
 use std::sync::Arc;
 
-use crate::error::{Error, Kind, Result, INDEX};
+use crate::constraints::entries::{summed, unknown};
+use crate::error::{Error, Kind, Result};
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Csr;
 use crate::platform::memory::{copied, zeros};
+
+/// A row below this part of its neighbours may be rounding that the host has left there.
+pub const SHORT: f64 = 1e-12;
 
 /// Rows as given, counting from 0; without `body` the dofs count through all bodies.
 #[derive(Debug, Clone, Copy)]
@@ -44,11 +49,18 @@ pub struct RowSet {
     pub rhs: Vec<f64>,
     /// 1/k >= 0, length / force; 0 for a rigid row.
     pub compliance: Vec<f64>,
+    /// Rows without entries, because repeated entries cancelled up to rounding.
+    pub cancelled: Vec<usize>,
 }
 
 impl Default for RowSet {
     fn default() -> Self {
-        Self { matrix: Arc::new(Csr::empty(0)), rhs: Vec::new(), compliance: Vec::new() }
+        Self {
+            matrix: Arc::new(Csr::empty(0)),
+            rhs: Vec::new(),
+            compliance: Vec::new(),
+            cancelled: Vec::new(),
+        }
     }
 }
 
@@ -60,7 +72,7 @@ impl RowSet {
     /// A copy that shares the entries of the rows; `what` names it in errors.
     pub fn copied(&self, what: &str) -> Result<Self> {
         let (rhs, compliance) = (copied(&self.rhs, what)?, copied(&self.compliance, what)?);
-        Ok(Self { matrix: Arc::clone(&self.matrix), rhs, compliance })
+        Ok(Self { matrix: Arc::clone(&self.matrix), rhs, compliance, cancelled: self.cancelled.clone() })
     }
 
     /// Entries and compliances equal those of the other, and the same rows may close.
@@ -76,7 +88,7 @@ impl RowSet {
     }
 
     /// Appends rows over bodies that begin at `offsets` (one entry more than bodies: the last is the end); repeated
-    /// entries of a row are summed. Returns the number of the first row. An error changes nothing.
+    /// entries of a row are summed, and rounding of such sums counts as no entry. Returns the number of the first row. An error changes nothing.
     pub fn add(&mut self, kind: RowKind, input: RowsInput<'_>, offsets: &[usize]) -> Result<usize> {
         let rows = input.ptr.len() - 1;
         if let Some(at) = first_non_finite(input.val) {
@@ -88,27 +100,27 @@ impl RowSet {
             None => zeros(rows, "constraint rows")?,
         };
         check_rhs(kind, &rhs, 0)?;
-        let mut added = Csr::empty(0);
+        let (mut added, mut cancelled) = (Csr::empty(0), Vec::new());
         for i in 0..rows {
             let mut entries = Vec::with_capacity(input.ptr[i + 1] - input.ptr[i]);
             for at in input.ptr[i]..input.ptr[i + 1] {
                 entries.push((unknown(input, at, offsets).map_err(|e| e.row(i).entry(at))?, input.val[at]));
             }
-            entries.sort_by_key(|entry| entry.0);
-            entries.dedup_by(|next, kept| {
-                let same = next.0 == kept.0;
-                kept.1 += if same { next.1 } else { 0.0 };
-                same
-            });
+            let noise = summed(&mut entries);
             if entries.iter().any(|entry| !entry.1.is_finite()) {
                 let what = "the sum of entries of one unknown is not a finite number";
                 return Err(Error::argument("val", what).row(i));
             }
-            entries.retain(|entry| entry.1 != 0.0);
+            if entries.iter().any(|entry| entry.1 != 0.0)
+                && entries.iter().all(|entry| entry.1.abs() <= noise)
+            {
+                cancelled.push(self.len() + i);
+            }
+            entries.retain(|entry| entry.1.abs() > noise);
             added.push_row(entries);
         }
         let compliance = zeros(rows, "constraint rows")?;
-        self.append(&Self { matrix: Arc::new(added), rhs, compliance }, offsets)
+        self.append(&Self { matrix: Arc::new(added), rhs, compliance, cancelled }, offsets)
     }
 
     /// Appends rows over the same unknowns; returns the number of the first.
@@ -119,6 +131,7 @@ impl RowSet {
         matrix.cols = offsets.last().copied().unwrap_or(0);
         self.rhs.extend(&more.rhs);
         self.compliance.extend(&more.compliance);
+        self.cancelled.extend(&more.cancelled);
         Ok(first)
     }
 
@@ -188,19 +201,25 @@ impl RowSet {
         multipliers.iter().zip(&self.compliance).map(|(l, c)| c * l * l).sum()
     }
 
-    /// A rigid row without entries constrains nothing: its right-hand side must satisfy it. Its multiplier is 0.
-    pub fn check_empty_rows(&self, kind: RowKind) -> Result<()> {
+    /// `max_j |b_ij|`
+    pub fn largest_entry(&self, i: usize) -> f64 {
+        self.matrix.row(i).fold(0.0, |most, (_, v)| most.max(v.abs()))
+    }
+
+    /// A rigid row without entries constrains nothing: its right-hand side must satisfy it, up to `rounding`. Its multiplier
+    /// is 0.
+    pub fn check_empty_rows(&self, kind: RowKind, rounding: f64) -> Result<()> {
         let empty = |i: usize| self.is_empty_row(i) && self.compliance[i] == 0.0;
         let fails = |i: usize| match kind {
-            RowKind::Inequality => self.rhs[i] < 0.0,
-            RowKind::Equality => self.rhs[i] != 0.0,
+            RowKind::Inequality => self.rhs[i] < -rounding,
+            RowKind::Equality => self.rhs[i].abs() > rounding,
             RowKind::Tangential => false,
         };
         match (0..self.len()).find(|&i| empty(i) && fails(i)) {
             Some(i) => Err(Error::new(Kind::GapsContradict, format!("this {} has no entries", kind.name()))
                 .row(i)
                 .value(self.rhs[i])
-                .limit(0.0)),
+                .limit(rounding)),
             None => Ok(()),
         }
     }
@@ -228,29 +247,6 @@ fn values_from(values: &mut [f64], first: usize, count: usize) -> Result<&mut [f
         let argument = if first < rows { "rows" } else { "first" };
         Error::argument(argument, format!("there are {rows} rows")).value(end as f64).limit(rows as f64)
     })
-}
-
-/// Number of the unknown of entry `at` among all unknowns.
-fn unknown(input: RowsInput<'_>, at: usize, offsets: &[usize]) -> Result<usize> {
-    let bodies = offsets.len() - 1;
-    let body = input.body.map(|body| {
-        usize::try_from(body[at]).ok().filter(|&b| b < bodies).ok_or_else(|| {
-            let what = format!("body {INDEX} does not exist: there are {bodies} bodies");
-            Error::argument("body", what).index(body[at])
-        })
-    });
-    let body = body.transpose()?;
-    let (start, end) = body.map_or((0, offsets[bodies]), |body| (offsets[body], offsets[body + 1]));
-    let dof = usize::try_from(input.dof[at]).ok().filter(|&dof| dof < end - start).ok_or_else(|| {
-        let of = if body.is_some() { "the body" } else { "all bodies" };
-        let what = format!("unknown {INDEX} is outside the {} unknowns of {of}", end - start);
-        let error = Error::argument("dof", what).index(input.dof[at]);
-        match body {
-            Some(body) => error.body(body),
-            None => error,
-        }
-    })?;
-    Ok(start + dof)
 }
 
 /// `s_i = (b_i D^-1 b_i' + 1/k_i)^-1/2`: with lambda = S mu every row of the dual has the same weight, whatever the
@@ -309,9 +305,9 @@ mod tests {
         let mut rows = RowSet::default();
         let empty = |rhs| RowsInput { ptr: &[0, 0], body: None, dof: &[], val: &[], rhs: Some(rhs) };
         rows.add(RowKind::Inequality, empty(&[1.0]), &[0, 3]).unwrap();
-        assert!(rows.check_empty_rows(RowKind::Inequality).is_ok());
+        assert!(rows.check_empty_rows(RowKind::Inequality, 0.0).is_ok());
         rows.add(RowKind::Inequality, empty(&[-1.0]), &[0, 3]).unwrap();
-        let error = rows.check_empty_rows(RowKind::Inequality).unwrap_err();
+        let error = rows.check_empty_rows(RowKind::Inequality, 0.0).unwrap_err();
         assert_eq!((error.kind, error.place.row), (Kind::GapsContradict, Some(1)));
     }
 
@@ -319,7 +315,8 @@ mod tests {
     fn a_row_between_a_soft_and_a_stiff_body_weighs_as_the_soft_one() {
         let mut matrix = Csr::empty(2);
         matrix.push_row([(0, 1.0), (1, -1.0)]);
-        let mut rows = RowSet { matrix: Arc::new(matrix), rhs: vec![0.0], compliance: vec![0.0] };
+        let mut rows =
+            RowSet { matrix: Arc::new(matrix), rhs: vec![0.0], compliance: vec![0.0], cancelled: vec![] };
         let s = row_scales(&rows, &[4.0, 4e12], 1.0);
         assert!((s[0] - 2.0).abs() < 1e-11);
         rows.set_compliance(0, &[0.75]).unwrap(); // 1/4 + 3/4 = 1, D and 1/k in the same unit
@@ -384,7 +381,7 @@ mod tests {
         rows.set_compliance(0, &[0.5, 0.5]).unwrap();
         assert!([RowKind::Inequality, RowKind::Equality]
             .iter()
-            .all(|kind| rows.check_empty_rows(*kind).is_ok()));
+            .all(|kind| rows.check_empty_rows(*kind, 0.0).is_ok()));
         let forces = |kind| rows.forces_without_entries(kind).collect::<Vec<_>>();
         assert_eq!(forces(RowKind::Inequality), [6.0, 0.0]);
         assert_eq!(forces(RowKind::Equality), [6.0, -6.0]);

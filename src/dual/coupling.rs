@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::linalg::graph::components;
 use crate::linalg::semidefinite::sparse::{dense_inverse, uncouple};
 use crate::linalg::sparse::gram::Gram;
+use crate::linalg::vector::NOISE;
 use crate::linalg::{Analysis, Cholesky, Csr, SpdSolver, Symmetric};
 use crate::platform::memory::{copied, headroom};
 
@@ -17,8 +18,6 @@ const SINGULAR: f64 = 1e-8;
 /// dependent row is this value divided by the square of the row's coefficient in the dependence, which is far below
 /// `SINGULAR`.
 const PROBES: [f64; 4] = [0.0, 1e-13, 1e-12, 1e-11];
-/// Entries of W below this are rounding: the rows are orthogonal.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Limit of rows in a block whose pseudo-inverse is formed.
 const DENSE: usize = 200;
 /// Added to the diagonal of larger blocks: it affects the kernel of W, which B' maps to zero, up to rounding of 1e-16 /
@@ -175,7 +174,7 @@ impl FaceCoupling {
 
 /// The rows with an off-diagonal entry of W above rounding, and W restricted to these rows, without smaller entries.
 fn coupled(w: &Symmetric) -> Result<(Vec<usize>, Symmetric)> {
-    let entries = |i: usize| w.lower_row(i).filter(move |(j, v)| *j == i || v.abs() > ROUNDING);
+    let entries = |i: usize| w.lower_row(i).filter(move |(j, v)| *j == i || v.abs() > NOISE);
     let mut feels = vec![false; w.order()];
     for i in 0..w.order() {
         for (j, _) in entries(i).filter(|(j, _)| *j != i) {

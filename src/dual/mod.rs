@@ -32,13 +32,10 @@ use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::dual::springs::{add_springs, negative_modes};
 use crate::error::Result;
-use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm};
+use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm, NOISE};
 use crate::linalg::{Csr, Packed};
 use crate::platform::memory::zeros;
 use crate::platform::tally;
-
-/// Accuracy of G.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// One body in the dual problem.
 struct Subdomain {
@@ -191,7 +188,7 @@ impl Dual {
 
     /// Accuracy of G: parts of `|G_p|` below this are zero.
     pub fn rounding(&self) -> f64 {
-        self.subdomains.iter().fold(ROUNDING, |most, s| most.max(s.kplus.error))
+        self.subdomains.iter().fold(NOISE, |most, s| most.max(s.kplus.error))
     }
 
     /// Range of the modes of body p among all modes.

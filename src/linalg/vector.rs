@@ -8,6 +8,8 @@ use crate::platform::threads::{parts, parts_of};
 /// Length from which a sum is formed in parts: a single sum waits for every addition, parts reach the speed of the
 /// memory.
 pub const LONG: usize = 16384;
+/// A sum is rounding if it is below this part of the sum of its terms' sizes.
+pub const NOISE: f64 = 64.0 * f64::EPSILON;
 /// Parts of a long sum.
 const PARTS: usize = 16;
 

@@ -1,5 +1,6 @@
 //! The input of the host: bodies, rows, options, also read from a file. It is checked here; nothing is computed.
 
+mod accuracy;
 mod bodies;
 mod contents;
 pub mod file;
@@ -14,6 +15,7 @@ mod settings;
 mod settings_text;
 mod words;
 
+pub use accuracy::Accuracy;
 pub use contents::{BodyRevisions, GivenBody, Model, Revisions, Sizes};
 pub use joints::Joint;
 pub use parts::{Part, Parts};

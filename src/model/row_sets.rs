@@ -113,19 +113,11 @@ impl Model {
         let bytes = present.saturating_add(entries).saturating_mul(PER_ENTRY);
         memory::headroom(bytes.saturating_add(rows.saturating_mul(PER_ENTRY)), "constraint rows")
     }
-
-    /// Refuses rows without entries whose right-hand side does not satisfy them.
-    pub fn check_empty_rows(&self) -> Result<()> {
-        let contact = self.contact.check_empty_rows(RowKind::Inequality);
-        contact.map_err(|error| empty_row_contradicts(error, 0))?;
-        let equalities = self.equalities.check_empty_rows(RowKind::Equality);
-        equalities.map_err(|error| empty_row_contradicts(error, self.contact.len()))
-    }
 }
 
 /// Turns the error of a row without entries into a proof of contradiction; `first` is the position of its kind in the
 /// stack.
-fn empty_row_contradicts(error: Error, first: usize) -> Error {
+pub fn empty_row_contradicts(error: Error, first: usize) -> Error {
     let (Some(row), Some(gap)) = (error.place.row, error.place.value) else { return error };
     error.proved_by(proof_of_rows(1.0, vec![(first + row, -gap)], first + row))
 }

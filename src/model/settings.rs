@@ -77,6 +77,8 @@ settings! {
         c"Full storage: the largest |K_ij - K_ji| relative to sqrt(K_ii K_jj); the library averages the two entries.";
     null_space_tolerance: f64 = F64(1e-8), 1e-15..=1e-2,
         c"A given null space R is accepted if |K R| is at most this fraction of |K||R| in the metric of diag K.";
+    data_accuracy: f64 = F64(1e-10), 1e-14..=1e-6,
+        c"Accuracy of normals, weights and coordinates in the rows, relative to their terms. A motion that every row with a force resists by less than this is undetermined: the rows are solved as if they did not resist it, and a share of the load along it up to this value is rounding, up to 1000 times this value marginal.";
     max_steps: i64 = I64(10_000), 1.0..=MANY,
         c"Number of steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far, unless the direct method completes the answer (option direct_limit).";
     memory_limit: i64 = I64(0), 0.0..=MANY,

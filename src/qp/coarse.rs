@@ -340,6 +340,21 @@ impl<'a> AnswerFace<'a> {
         Ok(solver.kernel().reduced(DROP * rounding))
     }
 
+    /// The motion a without the part that the rows resist well: `a - (W_F + rho I)^-1 W_F a`.
+    pub fn hardly_resisted(&mut self, a: &[f64]) -> Result<Vec<f64>> {
+        /// rho, relative to the largest diagonal entry of `G G'`.
+        const RHO: f64 = 1e-8;
+        let (mut along, mut left) = (vec![0.0; self.held.len()], a.to_vec());
+        self.coarse.g_transposed.mul(a, &mut along);
+        along.iter_mut().zip(self.held).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
+        let weights: Vec<f64> = self.held.iter().map(|held| f64::from(u8::from(!held))).collect();
+        let (image, rho) = (self.coarse.image(&along), RHO * self.coarse.largest());
+        if let Some(weighted) = self.coarse.weighted(&weights, rho)? {
+            axpy(-1.0, &weighted.solve(&image)?, &mut left);
+        }
+        Ok(left)
+    }
+
     /// `argmin |r_F - G_F'alpha|` on the rows that are not held, alpha of minimum norm.
     pub fn fitted(&mut self, r: &[f64]) -> Result<Vec<f64>> {
         self.coarse.multiplier(self.held, r)

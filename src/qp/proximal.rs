@@ -11,7 +11,7 @@
 //! alpha, reduces.
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::vector::{norm, ratio};
+use crate::linalg::vector::{norm, ratio, NOISE};
 use crate::linalg::{Csr, Matrix, PivotedCholesky};
 use crate::platform::{interrupt, tally};
 use crate::qp::{nearest_point, Direct, Polyhedron, Qp, Solution, Verdict};
@@ -24,8 +24,6 @@ const WEAK: f64 = 1e-8;
 const BALANCED: f64 = 1e-13;
 /// If the residual differs from the previous one by less than this part, the motion has met no further row.
 const UNCHANGED: f64 = 0.01;
-/// Accuracy of b, relative to b.
-const NOISE: f64 = 64.0 * f64::EPSILON;
 /// Limit of multiplications per search.
 const WORK: usize = 10_000_000_000;
 

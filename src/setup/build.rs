@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
-use crate::model::{Method, Model, Preconditioning, Settings};
+use crate::model::{Accuracy, Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
 use crate::progress::{Phase, SetupPart, Watch};
 use crate::qp::friction::PairsBetween;
@@ -31,13 +31,15 @@ impl Prepared {
         let begun = Instant::now();
         self.follow(model);
         model.check_complete()?;
-        model.check_empty_rows()?;
+        let accuracy = model.accuracy();
+        model.check_empty_rows(accuracy)?;
         if self.is_up_to_date(model) {
-            self.refresh_gaps(model);
+            self.refresh_gaps(model, accuracy);
             return Ok(());
         }
         self.release();
-        let islands = islands(model)?;
+        let mut islands = islands(model)?;
+        islands.iter_mut().for_each(|island| island.refresh(model, accuracy));
         let mut rows = reserved(islands.len(), "groups of bodies")?;
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
         for island in &islands {
@@ -57,11 +59,11 @@ impl Prepared {
     }
 
     /// Updates the gaps of the islands.
-    pub fn refresh_gaps(&mut self, model: &Model) {
+    pub fn refresh_gaps(&mut self, model: &Model, accuracy: Accuracy) {
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
         for ready in islands {
-            ready.island.refresh(model);
-            ready.whole.iter_mut().for_each(|whole| whole.island.refresh(model));
+            ready.island.refresh(model, accuracy);
+            ready.whole.iter_mut().for_each(|whole| whole.island.refresh(model, accuracy));
         }
     }
 

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
-use crate::model::Model;
+use crate::model::{Accuracy, Model};
 use crate::platform::memory::{copied, headroom, reserved, zeros};
 
 const WHAT: &str = "groups of bodies";
@@ -26,6 +26,8 @@ pub struct Island {
     pub friction: Nodes,
     /// 2^p, p = floor(log2 max K_ii), force / length: forces are divided by it.
     pub unit: f64,
+    /// The accuracy of the host's data.
+    pub accuracy: Accuracy,
 }
 
 /// Rows of one kind in an island.
@@ -145,16 +147,18 @@ impl Island {
         }
     }
 
-    /// Takes over the right-hand sides and the laws of friction of the host.
-    pub fn refresh(&mut self, model: &Model) {
+    /// Takes over the right-hand sides of the host, without those that are rounding, and its laws of friction.
+    pub fn refresh(&mut self, model: &Model, accuracy: Accuracy) {
         for (members, kind) in [
             (&mut self.contact, RowKind::Inequality),
             (&mut self.equalities, RowKind::Equality),
             (&mut self.friction.tangential, RowKind::Tangential),
         ] {
-            let rhs = &model.rows(kind).rhs;
-            members.rows.rhs.iter_mut().zip(&members.numbers).for_each(|(c, &i)| *c = rhs[i]);
+            let rows = model.rows(kind);
+            let of_host = members.rows.rhs.iter_mut().zip(&members.numbers);
+            of_host.for_each(|(c, &i)| *c = accuracy.rhs(kind, rows, i));
         }
+        self.accuracy = accuracy;
         for (own, &number) in self.friction.nodes.iter_mut().zip(&self.friction.numbers) {
             let (coefficient, bound) = law(model, number);
             *own = FrictionNode { coefficient, bound, ..*own };
@@ -297,13 +301,22 @@ fn restricted(
         numbers.iter().for_each(|&i| own.push_row(rows.matrix.row(i).map(|(j, v)| (place(j), v))));
         Arc::new(own)
     };
-    Ok(RowSet { matrix, rhs: copied(&pick(&rows.rhs), WHAT)?, compliance: pick(&rows.compliance) })
+    let (rhs, compliance) = (copied(&pick(&rows.rhs), WHAT)?, pick(&rows.compliance));
+    Ok(RowSet { matrix, rhs, compliance, cancelled: Vec::new() })
 }
 
 impl Island {
     fn empty() -> Self {
         let (contact, equalities, friction) = Default::default();
-        Self { bodies: Vec::new(), ranges: Vec::new(), contact, equalities, friction, unit: 1.0 }
+        Self {
+            bodies: Vec::new(),
+            ranges: Vec::new(),
+            contact,
+            equalities,
+            friction,
+            unit: 1.0,
+            accuracy: Accuracy::default(),
+        }
     }
 }
 

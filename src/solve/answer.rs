@@ -3,12 +3,14 @@
 use crate::certificate::{Certificate, FrictionState, RowJudgement};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
+use crate::linalg::Csr;
 use crate::model::Model;
 use crate::platform::memory::zeros;
 use crate::setup::{Members, Prepared, Ready};
 use crate::solve::island::{Ends, Solved};
 use crate::solve::recovery::{Ending, Recovered};
 use crate::solve::report::{Report, RowState};
+use crate::solve::slides::Slide;
 
 /// The answer of the last solve, in the units of the host. Entries are NaN for bodies of an island without an answer.
 pub struct Answer {
@@ -30,6 +32,8 @@ pub struct Answer {
     pub force_errors: Vec<f64>,
     /// Islands without an answer.
     pub failed: Vec<bool>,
+    /// G' of each island without resistance that is noise of the data, if it differs.
+    pub cleaned: Vec<Option<Csr>>,
 }
 
 impl Answer {
@@ -56,11 +60,13 @@ impl Answer {
             states: vec![RowState::Open; counts.rows],
             force_errors: vec![f64::NAN; counts.bodies],
             failed: ends.iter().map(std::result::Result::is_err).collect(),
+            cleaned: Vec::new(),
         };
         let mut all: Option<Certificate> = None;
         for (ready, end) in prepared.done(model)?.islands.iter().zip(ends) {
             match end {
-                Ok(solved) => {
+                Ok(mut solved) => {
+                    answer.cleaned.push(solved.cleaned.take());
                     let own = named(model, ready, solved.ending.judgement.certificate);
                     match &mut all {
                         None => all = Some(own),
@@ -68,7 +74,10 @@ impl Answer {
                     }
                     answer.take_in(model, ready, solved);
                 }
-                Err(_) => answer.leave_out(model, ready),
+                Err(_) => {
+                    answer.cleaned.push(None);
+                    answer.leave_out(model, ready);
+                }
             }
         }
         answer.report.body.take_if(|_| answer.failed.len() == 1);
@@ -98,7 +107,7 @@ impl Answer {
 
     /// Adds the answer of an island and its work counts.
     fn take_in(&mut self, model: &Model, ready: &Ready, solved: Solved) {
-        let Solved { ending, outcome, finished, unheld, .. } = solved;
+        let Solved { ending, outcome, finished, unheld, slide, .. } = solved;
         let Ending { solution, recovered, judgement, .. } = ending;
         let island = &ready.island;
         let states = states(ready, &recovered, &judgement.contact);
@@ -123,6 +132,9 @@ impl Answer {
         report.undetermined += solution.undetermined;
         report.finished |= finished;
         report.unheld = report.unheld.max(unheld);
+        if let Some(slide) = slide.filter(|own| report.slide.is_none_or(|slide| own.travel > slide.travel)) {
+            report.slide = Some(Slide { body: model.name(island.bodies[slide.body]), ..slide });
+        }
         report.counts = report.counts + solution.counts;
         let scale = solution.scale * island.unit.sqrt();
         report.gap_scale = report.gap_scale.hypot(scale);

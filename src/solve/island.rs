@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
 use crate::linalg::vector::norm_max;
-use crate::linalg::Operator;
+use crate::linalg::{Csr, Operator};
 use crate::model::Model;
 use crate::platform::{interrupt, threads};
 use crate::progress::{Steps, Stops, Voice};
@@ -12,7 +12,7 @@ use crate::qp::paper::Units;
 use crate::qp::{Direct, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
-use crate::solve::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
+use crate::solve::diagnosis::{Contradictions, Unheld};
 use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
 use crate::solve::friction::{nearest_forces, solve_with_friction};
@@ -23,6 +23,7 @@ use crate::solve::presolve::presolve;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 use crate::solve::report::Outcome;
 use crate::solve::scaled::Scaled;
+use crate::solve::slides::Slide;
 
 /// How the solution of one island ended.
 pub struct Solved {
@@ -32,6 +33,10 @@ pub struct Solved {
     pub finished: bool,
     /// The largest share of the load that nothing holds, over the groups of bodies that move together.
     pub unheld: f64,
+    /// The motion of a body that slides farthest, along rows that hardly resist it.
+    pub slide: Option<Slide>,
+    /// G' without resistance that is noise of the data, if bodies would slide along it.
+    pub cleaned: Option<Csr>,
     /// Time for recovery and certification of answers, including the last.
     pub judging: Duration,
     pub recovering: Duration,
@@ -40,15 +45,29 @@ pub struct Solved {
 /// How every island ended: with an answer, or with the named reason why it has none.
 pub type Ends = Vec<std::result::Result<Solved, Error>>;
 
+/// Limit of the answers after which resistance that is noise of the data is removed from G.
+const CLEANINGS: usize = 4;
+
 /// Name of S11 in the log.
 const DIAGNOSIS: &str = "forces nearest to the load";
 
 /// Result of one attempt at an island.
 enum Tried {
     Ended(Box<Solved>),
+    /// Bodies slide along rows that resist them by no more than the accuracy of the data: G' without this resistance, and
+    /// the forces of this answer.
+    Slides {
+        cleaned: Csr,
+        x: Vec<f64>,
+        below: f64,
+    },
     /// No forces were found that hold the load, with the rows marked in `far` left out.
     NotHeld {
         far: Vec<bool>,
+    },
+    /// The answer of the cleaned G': by the host's rows its forces leave a small part of the load along the motions that rest.
+    Leaves {
+        x: Vec<f64>,
     },
     /// As `NotHeld`, with friction.
     NotHeldByFriction {
@@ -79,9 +98,34 @@ fn solve_held(
     if start.iter().any(|x| *x != 0.0) {
         case.ready.dual.load_springs(&dual.resultants, &mut start);
     }
+    let mut cleanings = 0;
     loop {
-        match interrupt::part("dual solve", || attempt(case, number, &dual, &start, stops, voice))? {
-            Tried::Ended(solved) => return Ok(*solved),
+        let cleans = cleanings < CLEANINGS;
+        match interrupt::part("dual solve", || attempt(case, number, (&dual, cleans), &start, stops, voice))?
+        {
+            Tried::Ended(mut solved) => {
+                solved.cleaned = dual.cleaned;
+                return Ok(*solved);
+            }
+            Tried::Slides { cleaned, x, below } => {
+                voice.line(format!(
+                    "bodies slide along rows that resist them by less than {below:.1e} of their terms, the accuracy of the \
+                     data: these motions count as undetermined"
+                ))?;
+                cleanings += 1;
+                dual = scaled(case)?;
+                dual.cleaned = Some(cleaned);
+                start = x;
+            }
+            Tried::Leaves { x } => {
+                let rest = dual.left_by(case.ready, &x);
+                let left = Unheld::of(&case.data()?, case.ready, &dual, x, &rest);
+                // a body without load has no share of its own
+                let share = left.share.min(case.model.accuracy_of_coordinates());
+                dual.take(case, &left.x, Some(&left.load), share)?;
+                dual.excused = true;
+                start = left.x;
+            }
             Tried::NotHeld { far } => {
                 let (data, ready) = (case.data()?, case.ready);
                 let least = interrupt::part(DIAGNOSIS, || Unheld::least(&data, ready, &dual, &far))?;
@@ -93,6 +137,7 @@ fn solve_held(
                 let relative = relative.filter(Unheld::is_little);
                 let left = relative.unwrap_or(least);
                 dual.take(case, &left.x, left.load_to_take(share), share)?;
+                dual.along = left.amplitudes;
                 start = left.x;
             }
             Tried::NotHeldByFriction { far } => {
@@ -123,7 +168,7 @@ pub fn scaled(case: Case) -> Result<Scaled> {
 fn attempt(
     case: Case,
     number: usize,
-    dual: &Scaled,
+    (dual, cleans): (&Scaled, bool),
     start: &[f64],
     stops: &Stops,
     voice: &mut dyn Voice,
@@ -163,25 +208,53 @@ fn attempt(
     let mut ending = interrupt::never(|| judge.ending(solution))?;
     let recovery = &judge.recovery;
     recovery.bring_to_rest(&mut ending, false)?;
+    let slides = interrupt::never(|| recovery.slides(&ending))?;
+    let mut accuracy = case.island().accuracy;
+    let goes_on =
+        !matches!(ending.solution.verdict, Verdict::TimeLimit | Verdict::Cancelled | Verdict::StepLimit);
+    if dual.cleaned.is_some() || !slides.all.is_empty() {
+        accuracy.data = case.model.accuracy_of_coordinates();
+    }
+    if goes_on && cleans && !recovery.friction {
+        if let Some(cleaned) = slides.without_noise(recovery, accuracy.data) {
+            return Ok(Tried::Slides { cleaned, x: ending.solution.x, below: accuracy.data });
+        }
+    }
+    if goes_on && dual.cleaned.is_some() && !dual.excused && !ending.judgement.certificate.passed() {
+        return Ok(Tried::Leaves { x: ending.solution.x });
+    }
+    let slide = slides.worst();
     let is_solved = ending.solution.verdict == Verdict::Solved;
     let finished = is_solved && is_to_finish(settings, recovery, &ending) && finish(recovery, &mut ending)?;
     let mut outcome = outcome(case, dual, &ending.solution)?;
     if outcome == Outcome::Solved && !ending.judgement.certificate.passed() {
         outcome = Outcome::Inaccurate;
     }
+    if outcome == Outcome::Solved && slide.is_some() {
+        outcome = Outcome::Marginal;
+    }
     if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.load.is_some()) {
         // the certificate for the host uses the host's own load
         ending.judgement = interrupt::never(|| recovery.judged_on(&case.data()?, &ending.recovered))?;
-        let is_marginal = taken.share > ROUNDING || !ending.judgement.certificate.passed();
+        let is_marginal = taken.share > accuracy.data || !ending.judgement.certificate.passed();
         outcome = match outcome {
-            Outcome::Solved if taken.share > MARGINAL => Outcome::Inaccurate,
+            Outcome::Solved if taken.share > accuracy.marginal() => Outcome::Inaccurate,
             Outcome::Solved if is_marginal => Outcome::Marginal,
             outcome => outcome,
         };
     }
     let unheld = dual.unheld.as_ref().map_or(0.0, |taken| taken.share);
     let recovering = recovering.elapsed();
-    Ok(Tried::Ended(Box::new(Solved { ending, outcome, finished, unheld, judging, recovering })))
+    Ok(Tried::Ended(Box::new(Solved {
+        ending,
+        outcome,
+        finished,
+        unheld,
+        slide,
+        cleaned: None,
+        judging,
+        recovering,
+    })))
 }
 
 /// F for the direct method, which observes the memory limit.

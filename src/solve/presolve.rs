@@ -2,6 +2,7 @@
 
 use crate::constraints::RowKind;
 use crate::error::Result;
+use crate::linalg::vector::NOISE;
 use crate::linalg::Operator;
 use crate::setup::Ready;
 use crate::solve::case::Case;
@@ -9,10 +10,9 @@ use crate::solve::contradiction::contradiction;
 use crate::solve::diagnosis::Contradictions;
 use crate::solve::gaps::Gaps;
 
-/// Gaps of two rows are equal if they differ by less than this fraction of them ...
+/// Gaps of two rows are equal if they differ by less than this fraction of them, or by rounding of the distance by which
+/// loads and rows move the bodies.
 const EQUAL: f64 = 1e-10;
-/// ... or by rounding of the distance by which loads and rows move the bodies.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// A gap is far if it exceeds all motion caused by loads and demanded by rows by this factor.
 pub const FAR: f64 = 1e4;
 /// The factor with friction, where gaps of open rows enter the scale of the laws.
@@ -41,7 +41,7 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
         _ => c.abs(),
     };
     let reach = scaled.iter().enumerate().map(demand).fold(moved, f64::max);
-    let slack = |a: f64, b: f64| EQUAL * a.abs().max(b.abs()) + ROUNDING * reach;
+    let slack = |a: f64, b: f64| EQUAL * a.abs().max(b.abs()) + NOISE * reach;
     for (i, member) in rows.scaling.grouping.member[..rows.tangential].iter().enumerate() {
         let Some((group, sign)) = *member else { continue };
         let gap = sign * gaps.value[group];

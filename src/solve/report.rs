@@ -8,13 +8,14 @@ use crate::model::{Model, Sizes};
 use crate::progress::PhaseReport;
 use crate::qp;
 use crate::setup::{Prepared, Work};
+use crate::solve::slides::Slide;
 
 /// How a solve ended with an answer; with several groups of bodies, the outcome that comes last in this list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Outcome {
     /// The certificate holds.
     Solved,
-    /// Nothing holds a part of the load below 1e-7 of the load.
+    /// Nothing holds a small part of the load, or a body slides far along rows that hardly resist it.
     Marginal,
     /// The dual is solved up to rounding, but the certificate does not hold.
     Inaccurate,
@@ -61,6 +62,8 @@ pub struct Report {
     /// The largest share of the load that nothing holds, over the groups of bodies that move together: |resultant| /
     /// |load|, no unit.
     pub unheld: f64,
+    /// The body that slides farthest, along a motion that rows with a force hardly resist.
+    pub slide: Option<Slide>,
     /// Work of the methods on all islands.
     pub counts: qp::Counts,
     /// The direct finish (option `finish`) ran and its answer was kept.
@@ -102,6 +105,7 @@ impl Report {
             starts: 0,
             undetermined: 0,
             unheld: 0.0,
+            slide: None,
             counts: qp::Counts::default(),
             finished: false,
             gap_scale: 0.0,

@@ -3,7 +3,7 @@
 use crate::dual::Preconditioner;
 use crate::error::Result;
 use crate::linalg::vector::axpy;
-use crate::linalg::Operator;
+use crate::linalg::{Csr, Operator};
 use crate::qp::{self, Qp};
 use crate::setup::Ready;
 use crate::solve::case::Case;
@@ -21,6 +21,12 @@ pub struct Scaled {
     pub resultants: Vec<f64>,
     /// The part removed from the loads because nothing holds it.
     pub unheld: Option<Taken>,
+    /// G' without the resistance to slides that are noise of the host's data.
+    pub cleaned: Option<Csr>,
+    /// The motion along which forces leave a part of the load, amplitudes over the modes of the dual; empty if there is none.
+    pub along: Vec<f64>,
+    /// What these rows leave of the load has been removed from the loads.
+    pub excused: bool,
 }
 
 /// Loads without the part that nothing holds.
@@ -37,16 +43,28 @@ impl Scaled {
     pub fn new(ready: &Ready, load: Vec<f64>, moved: Vec<Vec<f64>>, gaps: Gaps) -> Self {
         let d = ready.dual.rhs(&moved, &gaps.dual);
         let resultants = ready.dual.resultants(&load);
-        Self { load, gaps, moved, d, resultants, unheld: None }
+        Self {
+            load,
+            gaps,
+            moved,
+            d,
+            resultants,
+            unheld: None,
+            cleaned: None,
+            along: Vec::new(),
+            excused: false,
+        }
     }
 
     /// Removes the part of the loads that forces x of the dual leave and of which nothing holds a `share`: `left`, in
     /// units of 2^p, from the loads if given, otherwise from the resultants alone.
     pub fn take(&mut self, case: Case, x: &[f64], left: Option<&[f64]>, share: f64) -> Result<()> {
         let ready = case.ready;
-        self.resultants.fill(0.0);
-        ready.dual.coarse.mul_transposed_add(1.0, x, &mut self.resultants);
-        let mut taken = Taken { load: None, share };
+        let mut held = vec![0.0; self.resultants.len()];
+        self.coarse(ready).mul_transposed_add(1.0, x, &mut held);
+        self.resultants = held;
+        let before = self.unheld.as_ref().map_or(0.0, |taken| taken.share);
+        let mut taken = Taken { load: None, share: share.max(before) };
         if let Some(left) = left {
             axpy(-1.0, left, &mut self.load);
             self.moved = ready.moved(case.threads(), &self.load)?;
@@ -57,8 +75,20 @@ impl Scaled {
         Ok(())
     }
 
+    /// G'
+    fn coarse<'a>(&'a self, ready: &'a Ready) -> &'a Csr {
+        self.cleaned.as_ref().unwrap_or(&ready.dual.coarse)
+    }
+
+    /// `e - G x`, by the rows of the host.
+    pub fn left_by(&self, ready: &Ready, x: &[f64]) -> Vec<f64> {
+        let mut left = ready.dual.resultants(&self.load);
+        ready.dual.coarse.mul_transposed_add(-1.0, x, &mut left);
+        left
+    }
+
     pub fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
-        let (g_transposed, blocks) = (&ready.dual.coarse, &ready.dual.blocks[..]);
+        let (g_transposed, blocks) = (self.coarse(ready), &ready.dual.blocks[..]);
         let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
         let (b, e, bounded, rounding) =
             (&self.d, &self.resultants, &self.gaps.bounded, ready.dual.rounding());

@@ -12,14 +12,12 @@ use std::ops::Range;
 
 use crate::error::Result;
 use crate::linalg::graph::joined;
-use crate::linalg::vector::{axpy, dot, norm_max};
+use crate::linalg::vector::{axpy, dot, norm_max, NOISE};
 use crate::linalg::{Csr, Matrix};
 use crate::qp::{nearest_point, Polyhedron};
 
 /// A motion depends on others if less than this part of its length is left beside them.
 const DEPENDENT: f64 = 1e-10;
-/// Rounding of a gap, relative to its terms.
-const NOISE: f64 = 64.0 * f64::EPSILON;
 /// The second pass removes the rounding of a long first travel.
 const PASSES: usize = 2;
 

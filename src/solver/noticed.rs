@@ -1,6 +1,6 @@
 //! Log lines about properties of the data that the host may not have intended.
 
-use crate::constraints::{FrictionNode, RowSet};
+use crate::constraints::{FrictionNode, RowKind, RowSet, SHORT};
 use crate::error::Result;
 use crate::linalg::Csr;
 use crate::model::{Model, Parts};
@@ -25,6 +25,7 @@ pub fn data(log: &Log, model: &Model) -> Result<()> {
             )
         })?;
     }
+    unusual(log, model)?;
     for (never, why) in [
         (rows(contact, |i| !contact.is_finite(i)), "because the gap is +infinity"),
         (rows(contact, |i| contact.is_finite(i) && has_no_entry(contact, i)), "because the row has no entry"),
@@ -99,6 +100,35 @@ fn parallel(a: &Csr, i: usize, b: &Csr, j: usize) -> bool {
 
 fn entries(rows: &Csr, i: usize) -> Vec<(usize, f64)> {
     rows.row(i).filter(|(_, value)| *value != 0.0).collect()
+}
+
+/// Rows whose entries cancel, and rows with entries far smaller than all others on their bodies.
+fn unusual(log: &Log, model: &Model) -> Result<()> {
+    let body_of = |j: usize| model.offsets[1..].partition_point(|end| *end <= j);
+    let all = RowKind::ALL.map(|kind| (kind, model.rows(kind)));
+    let mut largest = vec![0.0f64; model.bodies.len()];
+    for (j, v) in all.iter().flat_map(|(_, rows)| (0..rows.len()).flat_map(|i| rows.matrix.row(i))) {
+        let own = &mut largest[body_of(j)];
+        *own = own.max(v.abs());
+    }
+    for (kind, rows) in all {
+        let others =
+            |i: usize| rows.matrix.row(i).map(|(j, _)| largest[body_of(j)]).fold(f64::INFINITY, f64::min);
+        let short: Vec<usize> = (0..rows.len())
+            .filter(|&i| !rows.is_empty_row(i) && rows.largest_entry(i) < SHORT * others(i))
+            .collect();
+        for (some, what) in [
+            (&rows.cancelled, "the entries cancel up to rounding: the row constrains nothing"),
+            (&short, "its entries are below 1e-12 of those of all other rows on its bodies"),
+        ] {
+            let Some(first) = some.first() else { continue };
+            let (count, number) = (some.len(), *first as i64 + model.settings.index_base);
+            log.say(LogLevel::Result, || {
+                format!("warning: {} {number}: {what} (rows like this: {count})", kind.name())
+            })?;
+        }
+    }
+    Ok(())
 }
 
 /// `redundant` returns the rows of the stack, contact rows first, that are multiples of other rows, with their factors;

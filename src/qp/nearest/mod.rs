@@ -4,14 +4,12 @@
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::joined;
-use crate::linalg::vector::{axpy, dot, norm, norm_max, power_of_two_below};
+use crate::linalg::vector::{axpy, dot, norm, norm_max, power_of_two_below, NOISE};
 use crate::linalg::{Csr, Matrix};
 use crate::platform::interrupt;
 
 /// A unit row is dependent if less than this part of it is outside the span of the active rows.
 const DEPENDENT: f64 = 1e-11;
-/// A row is violated if the violation exceeds this part of `|a|`, its noise and the noise of a0.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The distance from a0 has decreased if it is below this part of its previous value.
 const FALLS: f64 = 0.999;
@@ -102,7 +100,7 @@ impl Default for ConnectedColumns {
 impl ConnectedColumns {
     fn nearest(&self, rounding: f64) -> Result<(Active<'_>, Vec<Vec<(usize, f64)>>)> {
         let (size, mut left_out) = (norm(&self.target), vec![false; self.gap.len()]);
-        let at_origin = |a: &[f64]| norm(a) <= ROUNDING * size && self.gap.iter().all(|gap| *gap >= 0.0);
+        let at_origin = |a: &[f64]| norm(a) <= NOISE * size && self.gap.iter().all(|gap| *gap >= 0.0);
         let (mut active, mut contradictions, mut farthest) = (Active::new(self), Vec::new(), 0.0);
         let enough = 5 * (self.target.len() + self.gap.len());
         for round in 0..enough.max(50 * (self.target.len() + 2)) {
@@ -132,7 +130,7 @@ impl ConnectedColumns {
 
     /// The row with the largest violation; active rows are satisfied up to rounding and do not count.
     fn most_violated(&self, active: &Active, known: f64, left_out: &[bool]) -> Option<usize> {
-        let (mut worst, zero) = ((None, 0.0), known + ROUNDING * norm(&active.a));
+        let (mut worst, zero) = ((None, 0.0), known + NOISE * norm(&active.a));
         let mut asked: Vec<bool> = left_out.iter().map(|out| !out).collect();
         active.rows.iter().for_each(|&i| asked[i] = false);
         for i in (0..self.gap.len()).filter(|&i| asked[i]) {

@@ -16,7 +16,7 @@ fn solve(a: &[Vec<f64>], gap: &[f64], target: &[f64]) -> Vec<f64> {
 fn noisy(a: &[Vec<f64>], gap: &[f64], target: &[f64], noise: f64) -> Nearest {
     let (rows, noise) = (rows(a), vec![noise; gap.len()]);
     let found =
-        nearest_point(Polyhedron { rows: &rows, gap, target, noise: &noise, rounding: ROUNDING }).unwrap();
+        nearest_point(Polyhedron { rows: &rows, gap, target, noise: &noise, rounding: NOISE }).unwrap();
     let mut reached = target.to_vec();
     rows.mul_transposed_add(-1.0, &found.forces, &mut reached);
     let far: Vec<f64> = reached.iter().zip(&found.point).map(|(a, b)| a - b).collect();

@@ -97,7 +97,7 @@ impl Whole {
             nodes: nodes.clone(),
             tangential: of_host(RowKind::Tangential)?,
         };
-        let island = Island { bodies, ranges, contact, equalities, friction, unit };
+        let island = Island { bodies, ranges, contact, equalities, friction, unit, accuracy: cut.accuracy };
         let bodies = threads::run(model.threads(), island.bodies.len(), |k| {
             let (body, part) = (island.bodies[k], part_of[k]);
             let made = whole_body(model, parts, (body, part), of_part);
@@ -202,7 +202,8 @@ fn members(
     }
     let rhs = copied(&cut.rows.rhs[..numbers.len()], WHAT)?;
     let compliance = copied(&cut.rows.compliance[..numbers.len()], WHAT)?;
-    Ok(Members { rows: RowSet { matrix: Arc::new(matrix), rhs, compliance }, numbers })
+    let rows = RowSet { matrix: Arc::new(matrix), rhs, compliance, cancelled: Vec::new() };
+    Ok(Members { rows, numbers })
 }
 
 fn whole_body(

@@ -6,16 +6,13 @@ use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::graph::joined;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
+use crate::model::Accuracy;
 use crate::platform::memory::zeros;
 use crate::qp::{weighted, Restricted};
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::scaled::Scaled;
 
-/// A part of the load that nothing holds may be rounding up to this share of the load: the answer without it is complete.
-pub const ROUNDING: f64 = 1e-10;
-/// Up to this share the answer without it is marginal; above it there is no answer, if that is proved.
-pub const MARGINAL: f64 = 1e-7;
 /// Ratio of the smallest to the largest load that is distinguished; a body without load counts as having the smallest.
 const RANGE: f64 = 1e-7;
 /// Rows and K resist a motion if this multiple of the load, and of the forces that it causes, could not move them.
@@ -27,6 +24,8 @@ const BEYOND: f64 = 1e6;
 pub struct Unheld {
     /// D R c over the unknowns of the island, in units of 2^p: the part not held, as a load.
     pub load: Vec<f64>,
+    /// c over the modes of the dual.
+    pub amplitudes: Vec<f64>,
     /// R c, the motion that this part causes.
     motion: Vec<f64>,
     /// The forces of the dual that leave this part.
@@ -43,6 +42,9 @@ pub struct Unheld {
     shares: Vec<f64>,
     /// Place in the island of the body with the largest part not held, in the cluster with the largest share.
     body: usize,
+    /// Up to its `data` a share is rounding, and the answer without it is complete; up to `marginal` that answer is
+    /// marginal; above it there is no answer, if that is proved.
+    accuracy: Accuracy,
 }
 
 impl Unheld {
@@ -82,6 +84,8 @@ impl Unheld {
             island.ranges.iter().map(of_body).collect()
         };
         let load = as_load(rest);
+        let sizes_of_modes = ready.dual.sizes_of_modes();
+        let amplitudes = rest.iter().zip(sizes_of_modes).map(|(e, size)| size * size * e).collect();
         let motion = load.iter().zip(metric).map(|(f, d)| f / d).collect();
         let load = free(data, load);
         let (left, resultants) = (sizes(&load), sizes(&free(data, as_load(&scaled.resultants))));
@@ -109,18 +113,31 @@ impl Unheld {
         let share = shares.get(body).copied().unwrap_or(0.0);
         let loaded = (0..left.len()).filter(|&p| loads[p] > 0.0);
         let of_body = loaded.map(|p| left[p] / loads[p]).fold(0.0, f64::max);
-        Self { load, motion, x, share, of_body, margin, cluster, loads, shares, body }
+        Self {
+            load,
+            amplitudes,
+            motion,
+            x,
+            share,
+            of_body,
+            margin,
+            cluster,
+            loads,
+            shares,
+            body,
+            accuracy: island.accuracy,
+        }
     }
 
     /// The load to subtract from the loads; none if neither `share` nor the share of a single body exceeds rounding:
     /// then only the resultants change.
     pub fn load_to_take(&self, share: f64) -> Option<&[f64]> {
-        (share.max(self.of_body) > ROUNDING).then_some(&self.load)
+        (share.max(self.of_body) > self.accuracy.data).then_some(&self.load)
     }
 
     /// Small enough to be rounding or marginal.
     pub fn is_little(&self) -> bool {
-        self.share <= MARGINAL
+        self.share <= self.accuracy.marginal()
     }
 
     /// The error with a motion v = R c which proves that nothing holds the load: by the data of the host K does not
@@ -134,7 +151,9 @@ impl Unheld {
         let (ready, island) = (case.ready, case.island());
         let worst = self.cluster[self.body];
         let moves: [&dyn Fn(usize) -> bool; 3] =
-            [&|p| self.cluster[p] == worst, &|p| self.shares[p] > MARGINAL, &|p| self.shares[p] > 0.0];
+            [&|p| self.cluster[p] == worst, &|p| self.shares[p] > self.accuracy.marginal(), &|p| {
+                self.shares[p] > 0.0
+            }];
         for moves in moves {
             let mut own = vec![0.0; self.motion.len()];
             let moved: Vec<usize> = (0..self.loads.len()).filter(|&p| moves(p)).collect();
@@ -203,7 +222,8 @@ impl Unheld {
         let largest = norm_max(&v);
         v.iter_mut().for_each(|v| *v /= largest);
         let dof = fastest - range.start;
-        let error = Error::new(Kind::LoadNotHeld, what).body(body).dof(dof).value(self.share).limit(MARGINAL);
+        let limit = self.accuracy.marginal();
+        let error = Error::new(Kind::LoadNotHeld, what).body(body).dof(dof).value(self.share).limit(limit);
         error.proved_by(Proof::Motion { margin: self.margin, v })
     }
 }
