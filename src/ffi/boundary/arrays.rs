@@ -6,6 +6,7 @@ use std::path::Path;
 use std::ptr::NonNull;
 
 use crate::error::{Error, Result, INDEX};
+use crate::platform::shortage::{is_short, RunningCall};
 use crate::solver::Borrowed;
 
 /// A size: not negative, and small enough for an array of 8-byte numbers.
@@ -76,8 +77,10 @@ pub fn column_major(rows: usize, columns: usize, ld: i64, name: &'static str) ->
 
 /// True if this memory is available: for small allocations, at whose failure Rust would end the process.
 pub fn left(bytes: usize) -> bool {
+    let _running = RunningCall::begin();
     let mut room = Vec::<u8>::new();
-    let left = room.try_reserve_exact(bytes).is_ok();
+    // what the reserve has given is not left
+    let left = room.try_reserve_exact(bytes).is_ok() && !is_short();
     std::hint::black_box(room);
     left
 }

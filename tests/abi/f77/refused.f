@@ -51,7 +51,7 @@ C     Bodies: number, unknowns, storage, columns, null space, node.
       CALL NOT(IERR, FTEARG - 4, 'n is 100000000')
       CALL FTBXYZ(IP, 2, 4, 2, IBOD, IBOD, R, 4, IERR)
       CALL NOT(IERR, FTEARG - 3, ' ')
-      CALL FTBXYF(IP, 2, FTEXCT, IERR)
+      CALL FTBXYF(IP, 2, 3, IERR)
       CALL NOT(IERR, FTEARG - 3, 'FETI_SOFT')
       CALL FTBLOD(IP, 2, 3, R, IERR)
       CALL NOT(IERR, FTEARG - 3, ' ')
