@@ -24,7 +24,7 @@ pub fn verified<K: Products>(k: &K, input: &NullSpaceInput, tolerance: f64) -> R
             Ok(Verified { misfit: found.misfit(), ..exact(k, &found.motions, tolerance)? })
         }
         Modes::Soft => {
-            let basis = orthonormal(k, &input.vectors)?;
+            let basis = orthonormal(|i| k.metric(i, 1.0), &input.vectors)?;
             Ok(Verified { basis, error: ROUNDING, misfit: None })
         }
     }

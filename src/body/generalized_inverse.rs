@@ -205,10 +205,18 @@ impl GeneralizedInverse {
         Ok(form)
     }
 
-    /// Measures the stiffness of the vectors if they are `soft`, otherwise the error of the null space; `rigid` motions
-    /// are carried.
-    pub(super) fn judged_by(self, k: &Multiple, soft: bool, rigid: Option<&Matrix>) -> Result<Self> {
-        let judged = if soft { self.softened(k)? } else { self.measured(k)? };
+    /// Measures the stiffness of the vectors if they are `soft`, with their metric if it is not D, otherwise the error of
+    /// the null space; `rigid` motions are carried.
+    pub(super) fn judged_by(
+        self,
+        k: &Multiple,
+        soft: Option<Option<&[f64]>>,
+        rigid: Option<&Matrix>,
+    ) -> Result<Self> {
+        let judged = match soft {
+            Some(weights) => self.softened(k, weights)?,
+            None => self.measured(k)?,
+        };
         match rigid {
             Some(rigid) => judged.with_carried(k, rigid),
             None => Ok(judged),
@@ -232,8 +240,8 @@ impl GeneralizedInverse {
     }
 
     /// Replaces the vectors by soft motions and their stiffness.
-    fn softened(mut self, k: &Multiple) -> Result<Self> {
-        (self.null_space, self.stiffness) = soft_motions(&self.factor, k, self.null_space)?;
+    fn softened(mut self, k: &Multiple, weights: Option<&[f64]>) -> Result<Self> {
+        (self.null_space, self.stiffness) = soft_motions(&self.factor, (k, weights), self.null_space)?;
         self.error = known_to_entries(&self.factor, k, &self.null_space)?;
         Ok(self)
     }

@@ -21,6 +21,8 @@ pub struct Known {
     pub(super) given: bool,
     /// K may have positive or negative stiffness along the vectors, which need not be exact.
     pub(super) soft: bool,
+    /// The metric of soft motions, n; D if not given.
+    pub(super) weights: Option<Arc<[f64]>>,
     /// Rigid motions for the coarse problem, whether K resists them or not.
     pub(super) rigid: Option<Matrix>,
     pub(super) symbolic: Option<Arc<Symbolic>>,
@@ -43,8 +45,9 @@ pub(super) enum Retry {
 impl Known {
     /// `given`: the host gave the fixing dofs.
     pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
-        let (soft, rigid, symbolic, doubt, misfit, retry) = (false, None, None, None, None, None);
-        Self { k, null_space, error, fixing, given, soft, rigid, symbolic, doubt, misfit, retry }
+        let (soft, weights, rigid, symbolic) = (false, None, None, None);
+        let (doubt, misfit, retry) = (None, None, None);
+        Self { k, null_space, error, fixing, given, soft, weights, rigid, symbolic, doubt, misfit, retry }
     }
 
     /// Takes over dofs chosen for other values, unless they hold this body much worse than its own dofs. Returns whether
@@ -106,6 +109,6 @@ impl Known {
             carried: None,
             near: None,
         };
-        inverse.judged_by(&self.k, self.soft, self.rigid.as_ref())
+        inverse.judged_by(&self.k, self.soft.then_some(self.weights.as_deref()), self.rigid.as_ref())
     }
 }

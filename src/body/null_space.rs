@@ -95,7 +95,7 @@ pub struct Verified {
 
 /// Checks `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`.
 pub fn exact<K: Products>(k: &K, vectors: &Matrix, tolerance: f64) -> Result<Verified> {
-    let basis = orthonormal(k, vectors)?;
+    let basis = orthonormal(|i| k.metric(i, 1.0), vectors)?;
     let (image, terms) = k.mul_columns(&basis)?;
     let mut error = ROUNDING;
     let weight = |i: usize| 1.0 / k.metric(i, 1.0);
@@ -113,9 +113,9 @@ pub fn exact<K: Products>(k: &K, vectors: &Matrix, tolerance: f64) -> Result<Ver
     Ok(Verified { basis, error, misfit: None })
 }
 
-/// A basis of the span with `R'DR = I`.
-pub fn orthonormal<K: Products>(k: &K, vectors: &Matrix) -> Result<Matrix> {
-    let root = |i: usize| k.metric(i, 1.0).sqrt();
+/// A basis of the span with `R'DR = I`, for this metric D.
+pub fn orthonormal(metric: impl Fn(usize) -> f64, vectors: &Matrix) -> Result<Matrix> {
+    let root = |i: usize| metric(i).sqrt();
     let scaled = Matrix::from_fn(vectors.rows, vectors.cols, |i, j| root(i) * vectors.get(i, j))?;
     let mut basis = scaled.orthonormalised(DEPENDENT);
     if basis.cols < vectors.cols {

@@ -153,7 +153,7 @@ impl Plan {
         match self {
             Self::Known(known) if other.gap.is_none() && other.own_motions() == known.null_space.cols => {
                 let misfit = known.held();
-                let Known { k, null_space, error, doubt, soft, rigid, .. } = known;
+                let Known { k, null_space, error, doubt, soft, weights, rigid, .. } = known;
                 let (rounding, stiffness) = (KNOWN, Vec::new());
                 let (carried, other) = (None, other.clone());
                 let own = GeneralizedInverse {
@@ -166,7 +166,7 @@ impl Plan {
                     carried,
                     ..other
                 };
-                let mut own = own.judged_by(&k, soft, rigid.as_ref())?;
+                let mut own = own.judged_by(&k, soft.then_some(weights.as_deref()), rigid.as_ref())?;
                 own.find_near(&k)?;
                 Ok(own)
             }

@@ -270,7 +270,7 @@ impl Search {
         if soft.weak == 0 && (self.digits.is_some() || !are_resisted(&self.k, &basis)?) {
             return Ok((basis, Vec::new()));
         }
-        let (motions, mut stiffness) = soft_motions(factor, &self.k, basis)?;
+        let (motions, mut stiffness) = soft_motions(factor, (&self.k, None), basis)?;
         // negative stiffness this small is rounding, since the host has given no soft motions
         stiffness.iter_mut().for_each(|stiffness| *stiffness = stiffness.max(0.0));
         Ok((motions, stiffness))

@@ -38,10 +38,15 @@ pub fn are_resisted(k: &Multiple, r: &Matrix) -> Result<bool> {
 }
 
 /// R with the span of `vectors` at the held unknowns, `R'DR = I` and `R'K R = diag(lambda)`; and lambda, 0 if it is
-/// rounding.
-pub fn soft_motions(factor: &Factor, k: &Multiple, vectors: Matrix) -> Result<(Matrix, Vec<f64>)> {
+/// rounding. `weights`: the metric if it is not D.
+pub fn soft_motions(
+    factor: &Factor,
+    (k, weights): (&Multiple, Option<&[f64]>),
+    vectors: Matrix,
+) -> Result<(Matrix, Vec<f64>)> {
+    let metric = |i: usize| weights.map_or(k.metric(i, 1.0), |weights| weights[i]);
     let r = corrected(factor, k, vectors)?;
-    let mut r = corrected(factor, k, orthonormal(k, &r)?)?;
+    let mut r = corrected(factor, k, orthonormal(metric, &r)?)?;
     let found = Resistance::of(k, &r)?;
     if r.cols > 0 {
         let (_, turn) = symmetric_eigen(&found.stiffness(&r)?)?;

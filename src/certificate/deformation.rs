@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::certificate::field::Field;
-use crate::certificate::{Data, NOISE};
+use crate::certificate::NOISE;
 use crate::error::Result;
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, norm, norm_max};
@@ -35,10 +35,10 @@ impl Deformation {
     }
 }
 
-/// `|r_j| / K_jj` of grounded unknowns, r the forces of the rows; `|u - R a|` of the others.
+/// `|r_j| / D~_j` of grounded and carried unknowns, r the forces of the rows; `|u - R a|` of the others.
 fn own(field: &Field) -> Result<Vec<f64>> {
     let mut own = without_motions(field)?;
-    for j in (0..own.len()).filter(|j| field.grounded[*j]) {
+    for j in (0..own.len()).filter(|j| field.grounded[*j] || field.carried[*j]) {
         own[j] = field.push[j].abs() / field.unit / field.metric[j];
     }
     Ok(own)
@@ -68,12 +68,12 @@ fn without_motions(field: &Field) -> Result<Vec<f64>> {
     let mut left = field.answer.u.to_vec();
     let mut first = Vec::with_capacity(data.bodies.len() + 1);
     first.push(0);
-    for body in &data.bodies {
-        first.push(first[first.len() - 1] + body.null_space.cols);
+    for (motions, _) in &field.motions {
+        first.push(first[first.len() - 1] + motions.cols);
     }
     let modes = first[data.bodies.len()];
     if modes > 0 {
-        let weights = weights(data);
+        let weights = weights(field);
         let mut amplitudes = Vec::with_capacity(modes);
         for p in 0..data.bodies.len() {
             amplitudes.extend(fitted(field, p).into_iter().map(|a| a * weights[p]));
@@ -82,7 +82,7 @@ fn without_motions(field: &Field) -> Result<Vec<f64>> {
         let kept = project(&joints, amplitudes)?;
         for (p, body) in data.bodies.iter().enumerate() {
             let a: Vec<f64> = kept[first[p]..first[p + 1]].iter().map(|b| b / weights[p]).collect();
-            body.null_space.mul_add(-1.0, &a, &mut left[body.range()]);
+            field.motions[p].0.mul_add(-1.0, &a, &mut left[body.range()]);
         }
     }
     left.iter_mut().for_each(|v| *v = v.abs());
@@ -90,25 +90,26 @@ fn without_motions(field: &Field) -> Result<Vec<f64>> {
 }
 
 /// `(unit_p / unit_0)^1/2`, no unit: the weight of an amplitude of body p, `|R_p a_p|_D = unit_p^1/2 |a_p|`.
-fn weights(data: &Data) -> Vec<f64> {
-    let unit = data.bodies.first().map_or(1.0, |body| body.unit);
-    data.bodies.iter().map(|body| (body.unit / unit).sqrt()).collect()
+fn weights(field: &Field) -> Vec<f64> {
+    let first = field.motions.first().map_or(1.0, |(_, unit)| *unit);
+    field.motions.iter().map(|(_, unit)| (unit / first).sqrt()).collect()
 }
 
 /// `a = R'D u / unit` of body p, r, length, without grounded unknowns; a second fit of the remainder removes rounding of
 /// a long travel.
 fn fitted(field: &Field, p: usize) -> Vec<f64> {
-    let (body, range) = (&field.data.bodies[p], field.range(p));
-    let mut all = vec![0.0; body.null_space.cols];
+    let range = field.range(p);
+    let (motions, unit) = &field.motions[p];
+    let mut all = vec![0.0; motions.cols];
     if all.is_empty() {
         return all;
     }
-    let by = field.unit / body.unit;
+    let by = field.unit / unit;
     let mut left = field.free(p, |j| field.answer.u[j]);
     for _ in 0..2 {
         let weighed: Vec<f64> = range.clone().map(|j| by * field.metric[j] * left[j - range.start]).collect();
-        let step = body.null_space.mul_transposed(&weighed);
-        body.null_space.mul_add(-1.0, &step, &mut left);
+        let step = motions.mul_transposed(&weighed);
+        motions.mul_add(-1.0, &step, &mut left);
         left.iter_mut().zip(range.clone()).filter(|(_, j)| field.grounded[*j]).for_each(|(v, _)| *v = 0.0);
         axpy(1.0, &step, &mut all);
     }
@@ -129,7 +130,7 @@ fn joints(field: &Field, first: &[usize], weights: &[f64]) -> Csr {
             let range = body.range();
             let own = rows.matrix.row(i).filter(|(j, _)| range.contains(j));
             let own: Vec<(usize, f64)> = own.map(|(j, v)| (j - range.start, v)).collect();
-            let resisted = resisted(&own, body.null_space).into_iter().enumerate();
+            let resisted = resisted(&own, &field.motions[p].0).into_iter().enumerate();
             entries.extend(resisted.map(|(k, v)| (first[p] + k, v / weights[p])).filter(|e| e.1 != 0.0));
         }
         let length = norm(&entries.iter().map(|(_, v)| *v).collect::<Vec<_>>());

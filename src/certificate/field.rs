@@ -1,20 +1,28 @@
 //! Quantities needed for all entries, over all unknowns and rows of the island.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::certificate::{metric, BodyData, Candidate, Data};
+use crate::body::Stiffness;
+use crate::certificate::carried::Metric;
+use crate::certificate::{BodyData, Candidate, Data, NOISE};
 use crate::constraints::{row_scales, RowKind, RowSet};
 use crate::error::Result;
-use crate::linalg::vector::{norm_max, power_of_two_below, weighted_norm};
+use crate::linalg::vector::{power_of_two_below, weighted_norm};
+use crate::linalg::Matrix;
 
 pub(super) struct Field<'a> {
     pub data: &'a Data<'a>,
     pub answer: Candidate<'a>,
     /// U, the power of two below max D, force / length.
     pub unit: f64,
-    /// D / U, n, no unit.
+    /// D~ / U, n, no unit.
     pub metric: Vec<f64>,
+    /// Carried unknowns, n.
+    pub carried: Vec<bool>,
+    /// R of every body, and the unit with `R'D~R = unit`, force / length.
+    pub motions: Vec<(Cow<'a, Matrix>, f64)>,
     /// Grounded unknowns, n.
     pub grounded: Vec<bool>,
     /// r = B'lambda + H'mu + T'lambda_t, n, force.
@@ -28,9 +36,18 @@ pub(super) struct Field<'a> {
 impl<'a> Field<'a> {
     pub fn new(data: &'a Data<'a>, answer: Candidate<'a>) -> Result<Self> {
         let n = answer.u.len();
-        let mut metric = metric(data, n);
-        let unit = power_of_two_below(norm_max(&metric));
-        metric.iter_mut().for_each(|d| *d /= unit);
+        let metered: Vec<_> =
+            data.bodies.iter().map(|body| (body.start, body.stiffness, body.unit)).collect();
+        let stiffest = |(_, k, unit): &(usize, Stiffness, f64)| {
+            (0..k.order()).map(|i| k.metric(i, *unit)).fold(0.0, f64::max)
+        };
+        let unit = power_of_two_below(metered.iter().map(stiffest).fold(0.0, f64::max));
+        let Metric { values: metric, carried: places } =
+            Metric::of(&metered, RowKind::ALL.map(|kind| data.rows(kind)), unit)?;
+        let mut carried = vec![false; n];
+        places.into_iter().for_each(|j| carried[j] = true);
+        let motions = data.bodies.iter().map(|body| motions(body, unit, &metric, &carried));
+        let motions = motions.collect::<Result<_>>()?;
         let (mut push, mut push_terms) = (vec![0.0; n], vec![0.0; n]);
         for kind in RowKind::ALL {
             let (rows, multipliers) = (data.rows(kind), answer.forces(kind));
@@ -40,11 +57,13 @@ impl<'a> Field<'a> {
         let mut grounded = vec![false; n];
         for body in data.bodies.iter().filter(|body| !body.grounded.is_empty()) {
             let moving = moving(body)?;
-            let held = body.grounded.iter().filter(|j| !moving.contains(j));
+            let pilots = carried[body.range()].iter().all(|carried| *carried);
+            let free = |j: &&u32| pilots || moving.contains(j);
+            let held = body.grounded.iter().filter(|j| !free(j));
             held.for_each(|j| grounded[body.start + *j as usize] = true);
         }
         let scales = RowKind::ALL.map(|kind| row_scales(data.rows(kind), &metric, unit));
-        Ok(Self { data, answer, unit, metric, grounded, push, push_terms, scales })
+        Ok(Self { data, answer, unit, metric, carried, motions, grounded, push, push_terms, scales })
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
@@ -85,6 +104,24 @@ impl<'a> Field<'a> {
             Some(p)
         })
     }
+}
+
+/// R of a body with its unit: those of the host, or of `R'D~R = U` if some of its unknowns are carried.
+fn motions<'a>(
+    body: &BodyData<'a>,
+    unit: f64,
+    metric: &[f64],
+    carried: &[bool],
+) -> Result<(Cow<'a, Matrix>, f64)> {
+    let given = body.null_space;
+    if given.cols == 0 || !carried[body.range()].contains(&true) {
+        return Ok((Cow::Borrowed(given), body.unit));
+    }
+    let root = |i: usize| metric[body.start + i].sqrt();
+    let basis = Matrix::from_fn(given.rows, given.cols, |i, j| root(i) * given.get(i, j))?;
+    let basis = basis.orthonormalised(NOISE);
+    let motions = Matrix::from_fn(basis.rows, basis.cols, |i, j| basis.get(i, j) / root(i))?;
+    Ok((Cow::Owned(motions), unit))
 }
 
 /// Grounded unknowns j of a body that its null space moves nevertheless, `|K_jj R_j| > 1/4 sum_k |K_jk||R_k|`: they are

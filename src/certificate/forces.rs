@@ -14,13 +14,16 @@ use crate::platform::memory::filled;
 /// Limit of the residual that rounding may excuse in the equilibrium of one body, relative to the forces of the island:
 /// if a body has moved so far that its strain is lost, the answer is not known.
 const EXCUSED: f64 = 1e-2;
+/// Forces of a body without load are zero below this part of the forces of the island: answers of other solvers carry
+/// 1e-13.
+const IDLE: f64 = 1e-10;
 
 /// Measures of the forces.
 pub(super) struct Forces {
     /// `|f|_{D^-1} + |r|_{D^-1}` of every body without its grounded unknowns, force; none if all its unknowns are
     /// grounded.
     sizes: Vec<Option<f64>>,
-    /// Bodies without load, except on grounded unknowns.
+    /// Bodies without load, except on grounded unknowns; a load below 64 eps of the forces of the island is none.
     unloaded: Vec<bool>,
     /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. If there is no such load, the
     /// forces for the prescribed motion (`asked`) are added.
@@ -57,22 +60,23 @@ impl Forces {
         let of_body = |(size, strain): (&Option<f64>, &f64)| ratio(size.unwrap_or(0.0), *strain);
         let leverage = sizes.iter().zip(&strains).map(of_body).fold(0.0, f64::max);
         let strain = weighted_norm(&strains, |_| 1.0);
-        let unloaded = loads.iter().map(|load| *load == 0.0).collect();
+        let unloaded = loads.iter().map(|load| *load <= NOISE * forces).collect();
         Self { sizes, unloaded, everywhere: forces + moved, strains, strain, leverage, acting: forces > 0.0 }
     }
 
-    /// Rounding of the largest forces of the island, force, if body p has neither a load nor other forces; otherwise 0.
-    fn idle(&self, p: usize, size: f64) -> f64 {
-        if self.unloaded[p] && size <= NOISE * self.everywhere {
-            NOISE * self.everywhere
+    /// `part` of the forces of the island, force, if body p has neither a load nor larger forces; otherwise 0.
+    fn idle(&self, p: usize, size: f64, part: f64) -> f64 {
+        let most = part * self.everywhere;
+        if self.unloaded[p] && size <= most {
+            most
         } else {
             0.0
         }
     }
 
-    /// The largest `idle` of the bodies that a row touches, (force x length)^1/2.
+    /// Rounding of the largest forces of the island if a row touches a body without load and forces, (force x length)^1/2.
     pub fn idle_at(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
-        let of = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0));
+        let of = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0), NOISE);
         field.touched(field.rows(kind), i).map(of).fold(0.0, f64::max) / field.unit.sqrt()
     }
 
@@ -89,7 +93,7 @@ impl Forces {
         let rows = field.rows(kind);
         let allowed = |p: usize| {
             let size = self.sizes[p].unwrap_or(0.0) + at_grounded(field, rows, i, p);
-            (field.data.limit * size).max(self.idle(p, size))
+            (field.data.limit * size).max(self.idle(p, size, IDLE))
         };
         match field.touched(rows, i).map(allowed).reduce(smaller) {
             Some(least) => field.scales[kind as usize][i] * least,
@@ -199,7 +203,7 @@ fn equilibrium(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f6
         positive(residual.abs() - noise)
     });
     let strain = field.size(p, &field.free(p, |j| products.0[j - start]));
-    share(field.size(p, &left), field.data.limit * (size + strain) + forces.idle(p, size))
+    share(field.size(p, &left), field.data.limit * (size + strain) + forces.idle(p, size, IDLE))
 }
 
 /// The residual excused by rounding in `equilibrium`, relative to the largest that may be excused; no unit.
@@ -240,41 +244,43 @@ fn grounded(field: &Field, p: usize, products: (&[f64], &[f64])) -> f64 {
 /// `(K R)'u` is part of the balance.
 fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     let body = &field.data.bodies[p];
-    let Some(size) = forces.sizes[p].filter(|_| body.null_space.cols > 0) else { return Ok(0.0) };
+    let (motions, unit) = &field.motions[p];
+    let Some(size) = forces.sizes[p].filter(|_| motions.cols > 0) else { return Ok(0.0) };
     let terms = field.size(p, &field.free(p, |j| field.load(p, j).abs() + field.push_terms[j]));
-    let allowed = field.data.limit * size + NOISE * terms + forces.idle(p, size);
+    let allowed = field.data.limit * size + NOISE * terms + forces.idle(p, size, IDLE);
     let rest = field.free(p, |j| field.load(p, j) - field.push[j]);
-    let mut resultants = body.null_space.mul_transposed(&rest);
-    let weight = field.unit / body.unit;
+    let mut resultants = motions.mul_transposed(&rest);
+    let weight = field.unit / unit;
     let ratio = share(weighted_norm(&resultants, |_| weight), allowed);
     if ratio <= 1.0 && !body.soft {
         return Ok(ratio);
     }
     let u = field.free(p, |j| field.answer.u[j]);
-    let held = if body.soft { held_softly(body, &u)? } else { resisted(field, p)?.mul_transposed(&u) };
+    let held =
+        if body.soft { held_softly(body, motions, &u)? } else { resisted(field, p)?.mul_transposed(&u) };
     resultants.iter_mut().zip(held).for_each(|(left, held)| *left -= held);
     Ok(share(weighted_norm(&resultants, |_| weight), allowed))
 }
 
 /// `(K R)'u` of a body, r, in double-double arithmetic: for a weak spring the terms nearly cancel, and if K R is rounding
 /// of R the sum is 0 for any u.
-fn held_softly(body: &BodyData, u: &[f64]) -> Result<Vec<f64>> {
+fn held_softly(body: &BodyData, motions: &Matrix, u: &[f64]) -> Result<Vec<f64>> {
     let by_motion = |k: usize| {
         let mut image = filled(u.len(), Twofold::default(), "the balance of a body")?;
-        body.stiffness.add_twofold(1.0, body.null_space.col(k), &mut image)?;
+        body.stiffness.add_twofold(1.0, motions.col(k), &mut image)?;
         let image: Vec<f64> = image.into_iter().map(Twofold::value).collect();
         Ok(Twofold::dot(&image, u))
     };
-    (0..body.null_space.cols).map(by_motion).collect()
+    (0..motions.cols).map(by_motion).collect()
 }
 
 /// `K R` of body p, n_p x r, force / length; 0 if it is rounding.
 fn resisted(field: &Field, p: usize) -> Result<Matrix> {
-    let body = &field.data.bodies[p];
-    let (n, r) = (body.null_space.rows, body.null_space.cols);
+    let (body, motions) = (&field.data.bodies[p], &field.motions[p].0);
+    let (n, r) = (motions.rows, motions.cols);
     let (mut all, mut terms) = (Matrix::zeros(n, r)?, vec![0.0; n]);
     for k in 0..r {
-        body.stiffness.mul_with_terms(body.null_space.col(k), all.col_mut(k), &mut terms)?;
+        body.stiffness.mul_with_terms(motions.col(k), all.col_mut(k), &mut terms)?;
         let rounding = |(v, t): &(&mut f64, &f64)| v.abs() <= NOISE * **t;
         all.col_mut(k).iter_mut().zip(&terms).filter(rounding).for_each(|(v, _)| *v = 0.0);
     }

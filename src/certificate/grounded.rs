@@ -2,7 +2,6 @@
 
 use crate::body::Stiffness;
 use crate::error::Result;
-use crate::linalg::Symmetric;
 use crate::platform::memory::zeros;
 
 /// Limit of K_jj / T_j. For chains, trusses, beams and solids, even a million times as stiff as their support, the ratio
@@ -25,19 +24,24 @@ pub fn grounded(k: Stiffness) -> Result<Vec<u32>> {
             neighbours[i] += through(k_ij, diagonal(j));
         }
     };
-    match k {
-        Stiffness::Matrix(k) => each_entry(k, couple),
-        // contributions of two pieces to one entry count as two neighbours
-        Stiffness::Assembled(k) => k.each_entry(couple),
-        Stiffness::Host(_) => return Ok(Vec::new()),
+    if !each_entry(k, couple) {
+        return Ok(Vec::new());
     }
     let is_grounded = |j: &usize| diagonal(*j) > GROUNDED * neighbours[*j];
     Ok((0..order).filter(is_grounded).map(|j| j as u32).collect())
 }
 
-/// Row, column and value of every entry of the lower triangle.
-fn each_entry(k: &Symmetric, mut visit: impl FnMut(usize, usize, f64)) {
-    (0..k.order()).for_each(|i| k.lower_row(i).for_each(|(j, v)| visit(i, j, v)));
+/// Visits row, column and value of every entry of the lower triangle; false if the host keeps them. Contributions of two
+/// pieces to one entry are two entries.
+pub(super) fn each_entry(k: Stiffness, mut visit: impl FnMut(usize, usize, f64)) -> bool {
+    match k {
+        Stiffness::Matrix(k) => {
+            (0..k.order()).for_each(|i| k.lower_row(i).for_each(|(j, v)| visit(i, j, v)));
+        }
+        Stiffness::Assembled(k) => k.each_entry(visit),
+        Stiffness::Host(_) => return false,
+    }
+    true
 }
 
 /// `k_ij^2 / k_ii`, force / length; `k_ij^2` alone might overflow.
@@ -52,6 +56,7 @@ fn through(k_ij: f64, k_ii: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::Symmetric;
 
     /// Springs between n unknowns, and springs to the ground at single unknowns.
     fn chain(springs: &[f64], held: &[(usize, f64)]) -> Symmetric {

@@ -8,6 +8,7 @@
 //! max D: `(sum U/D f^2)^1/2` is a force, `(sum D/U u^2)^1/2` a length, `s_i / U^1/2` a number that keeps every
 //! bit in units that differ by powers of two.
 
+mod carried;
 mod deformation;
 mod energy;
 mod entry;
@@ -27,6 +28,7 @@ use crate::error::Result;
 use crate::linalg::Matrix;
 
 pub use crate::linalg::vector::NOISE;
+pub use carried::Metric;
 use deformation::Deformation;
 use energy::Energies;
 pub use entry::{Certificate, Entry};
@@ -216,16 +218,6 @@ pub fn certify(data: &Data, answer: Candidate, response: &mut dyn Response) -> R
     let unevenness = rows.unevenness();
     let nodes = rows.states();
     Ok(Judgement { certificate, bodies, contact: rows.limits(), nodes, length, leverage, unevenness })
-}
-
-/// `D = diag K` over all unknowns, force / length.
-pub fn metric(data: &Data, unknowns: usize) -> Vec<f64> {
-    let mut metric = vec![0.0; unknowns];
-    for body in &data.bodies {
-        (0..body.stiffness.order())
-            .for_each(|i| metric[body.start + i] = body.stiffness.metric(i, body.unit));
-    }
-    metric
 }
 
 /// `(x)_+`; NaN stays NaN.

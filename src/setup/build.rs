@@ -1,14 +1,17 @@
 //! Everything that does not depend on loads and gaps: null spaces, factors, scaling, dual operators.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::body::Pilots;
+use crate::certificate::Metric;
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
 use crate::model::{Accuracy, Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
-use crate::progress::{Phase, SetupPart, Watch};
+use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::qp::friction::PairsBetween;
 use crate::qp::BetweenSolves;
 use crate::setup::islands::{islands, Island, Members};
@@ -42,20 +45,46 @@ impl Prepared {
         islands.iter_mut().for_each(|island| island.refresh(model, accuracy));
         let mut rows = reserved(islands.len(), "groups of bodies")?;
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
+        let mut pilots = vec![Pilots::default(); model.bodies.len()];
         for island in &islands {
             check_compliance(island)?;
-            let own = DualRows::of(island, metric(model, island), coupled(&model.settings))?;
+            let Metric { values, carried } = metric(model, island)?;
+            for (&p, range) in island.bodies.iter().zip(&island.ranges) {
+                let first = carried.partition_point(|j| *j < range.start);
+                if carried.get(first..first + range.len()).is_some_and(|own| own.last() < Some(&range.end)) {
+                    let by = ratio_of_units(model, island, p);
+                    let metric = values[range.clone()].iter().map(|d| (d * by).min(f64::MAX));
+                    pilots[p] = Some(metric.collect());
+                }
+            }
+            let mut own = DualRows::of(island, values, coupled(&model.settings))?;
+            own.uneven |= !carried.is_empty();
             let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix, own.first_tangential());
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
             rows.push(own);
         }
+        self.carry(pilots);
         watch.phases.ended(Phase::Rows, begun);
         let operators = self.factorize(model, &distinct, watch)?;
+        self.tell_pilots(model, &watch.log)?;
         let begun = Instant::now();
         self.duals = Some(self.dualize(model, islands.into_iter().zip(rows).collect(), operators, watch)?);
         self.made += 1;
         watch.phases.ended(Phase::DualOperators, begun);
         Ok(())
+    }
+
+    /// Logs how many unknowns are carried.
+    fn tell_pilots(&self, model: &Model, log: &Log) -> Result<()> {
+        let carries = |p: &usize| self.bodies[*p].pilots.is_some();
+        let Some(first) = (0..self.bodies.len()).find(carries) else { return Ok(()) };
+        let all: usize = self.bodies.iter().filter_map(|own| own.pilots.as_ref()).map(|own| own.len()).sum();
+        let number = model.name(first) as i64 + model.settings.index_base;
+        log.say(LogLevel::Result, || {
+            format!(
+                "rows hold {all} unknowns far better than K does, as pilots: the first is in body {number}"
+            )
+        })
     }
 
     /// Updates the gaps of the islands.
@@ -81,7 +110,7 @@ impl Prepared {
             let mut parts = reserved(island.bodies.len(), "groups of bodies")?;
             for (number, (&p, range)) in island.bodies.iter().zip(&island.ranges).enumerate() {
                 (island_of[p], number_in[p]) = (k, number);
-                let by = island.unit / model.bodies[p].body.without(island.unit);
+                let by = ratio_of_units(model, island, p);
                 let Some(inverse) = self.bodies[p].inverse.as_mut() else { continue };
                 let (kplus, kept) = (Arc::clone(&inverse.kplus), inverse.operator.take());
                 let (size, implicit) = (operators.sizes[p], operators.implicit[p]);
@@ -128,16 +157,20 @@ fn coupled(settings: &Settings) -> bool {
     !matches!(settings.method, Method::Proportioning | Method::Smalbe)
 }
 
-/// `D / 2^p` over the unknowns of an island; for dofs without stiffness D is that of the stiffest dof of their body.
-fn metric(model: &Model, island: &Island) -> Vec<f64> {
-    let of_body = |&p: &usize| {
+/// The unit of forces of an island, 2^p, relative to that of K of a body, a power of two. Above 2^1000 the stiffness of the
+/// body is nothing: its unknowns are carried, and K+ is 0.
+fn ratio_of_units(model: &Model, island: &Island, body: usize) -> f64 {
+    (island.unit / model.bodies[body].body.without(island.unit)).min(2f64.powi(1000))
+}
+
+/// `D~ / 2^p` over the unknowns of an island; for dofs without stiffness D is that of the stiffest dof of their body.
+fn metric(model: &Model, island: &Island) -> Result<Metric> {
+    let of_body = |(&p, range): (&usize, &Range<usize>)| {
         let body = &model.bodies[p].body;
-        let without = body.without(island.unit);
-        body.k()
-            .into_iter()
-            .flat_map(move |k| (0..k.order()).map(move |i| k.metric(i, without) / island.unit))
+        Some((range.start, body.k()?, body.without(island.unit)))
     };
-    island.bodies.iter().flat_map(of_body).collect()
+    let bodies: Vec<_> = island.bodies.iter().zip(&island.ranges).filter_map(of_body).collect();
+    Metric::of(&bodies, RowKind::ALL.map(|kind| &island.members(kind).rows), island.unit)
 }
 
 /// Fraction of the setup completed after the dual operators: the rest is for the preconditioner.

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use crate::body::{
-    input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic,
+    input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Pilots, Plan, Symbolic,
 };
 use crate::certificate::grounded;
 use crate::dual::{DistinctRows, Kept, Size};
@@ -49,7 +49,7 @@ impl Prepared {
         let pending: Vec<usize> = (0..representatives.len())
             .filter(|&p| representatives[p] == p && self.bodies[p].inverse.is_none())
             .collect();
-        let mut plans = plans(model, &pending, watch)?;
+        let mut plans = plans(model, &pending, &self.bodies, watch)?;
         let begun = watch.phases.ended(Phase::NullSpaces, begun);
         self.analyse(model, &pending, &mut plans, watch)?;
         let begun = watch.phases.ended(Phase::Analysis, begun);
@@ -95,7 +95,8 @@ impl Prepared {
             match factor {
                 None => {
                     let matrix = model.bodies[p].body.stiffness.clone();
-                    own.push((p, plan.bytes(), Mutex::new(Some(plan)), matrix));
+                    let pilots = self.bodies[p].pilots.clone();
+                    own.push((p, plan.bytes(), Mutex::new(Some(plan)), (matrix, pilots)));
                 }
                 Some(q) => others.push((p, plan, q)),
             }
@@ -108,13 +109,13 @@ impl Prepared {
         let make = |k: usize| {
             let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
-            let (p, matrix) = (own[k].0, own[k].3.as_ref());
+            let (p, (matrix, pilots)) = (own[k].0, &own[k].3);
             let mut made = plan.execute().map_err(|e| of_coordinates(&model.bodies[p].body, e).body(p))?;
-            if let Some(matrix) = matrix.filter(|_| rounded[p]) {
+            if let Some(matrix) = matrix.as_ref().filter(|_| rounded[p]) {
                 let k = Multiple { matrix: Arc::clone(matrix), by: 1.0 / model.bodies[p].body.unit() };
                 made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(p))?;
             }
-            Ok((made, grounded_in(matrix)?))
+            Ok((made, grounded_in(matrix.as_ref(), pilots)?))
         };
         watch.every_body(&part, make, |k, (made, grounded)| {
             let (p, bytes) = (own[k].0, own[k].1.saturating_sub(made.inverse.bytes_saved()));
@@ -129,7 +130,7 @@ impl Prepared {
             let share = |of: &Inverse| Ok((of.bytes, plan.with_factor_of(&of.kplus)?));
             let of = self.bodies[q].inverse.as_ref().map(share).transpose()?;
             self.bodies[p].symbolic = symbolic;
-            let grounded = grounded_in(model.bodies[p].body.stiffness.as_ref())?;
+            let grounded = grounded_in(model.bodies[p].body.stiffness.as_ref(), &self.bodies[p].pilots)?;
             self.bodies[p].inverse = of.map(|(bytes, kplus)| {
                 let kplus = Arc::new(kplus);
                 Inverse { unit, kplus, grounded, bytes, operator: None }
@@ -160,7 +161,10 @@ impl Prepared {
     /// body.
     fn representatives(&mut self, model: &Model) -> Result<Vec<usize>> {
         self.find_keys(model)?;
-        let same = |p: usize, q: usize| same_body(&model.bodies[p].body, &model.bodies[q].body);
+        let same = |p: usize, q: usize| {
+            self.bodies[p].pilots == self.bodies[q].pilots
+                && same_body(&model.bodies[p].body, &model.bodies[q].body)
+        };
         let key = |p: usize| (self.bodies[p].keys, input_key(&model.bodies[p].body));
         let first = classes(self.bodies.len(), key, same);
         let has = |p: usize| self.bodies[p].inverse.is_some();
@@ -302,7 +306,7 @@ impl Prepared {
             } else if let Some(held) = kplus.misfit.filter(|_| !model.is_piece(p)).and_then(|of| of.held()) {
                 log.say(LogLevel::Phase, || format!("body {number}: {held}"))?;
             }
-            if kplus.is_soft() {
+            if kplus.is_soft() && self.bodies[p].pilots.is_none() {
                 let soft = kplus.stiffness.iter().filter(|stiffness| **stiffness != 0.0);
                 let least = soft.clone().fold(f64::INFINITY, |least: f64, stiffness| least.min(*stiffness));
                 let text = || {
@@ -326,9 +330,12 @@ fn same_stiffness(model: &Model, p: usize, q: usize) -> bool {
     a.zip(b).is_some_and(|(a, b)| same_matrix(a, b))
 }
 
-/// Unknowns of a matrix that are held so stiffly that neighbours are negligible.
-fn grounded_in(matrix: Option<&Arc<Symmetric>>) -> Result<Arc<[u32]>> {
-    matrix.map_or(Ok(Arc::from([])), |k| grounded((&**k).into()).map(Arc::from))
+/// Unknowns of a matrix that are held so stiffly that neighbours are negligible; none if rows carry all.
+fn grounded_in(matrix: Option<&Arc<Symmetric>>, pilots: &Pilots) -> Result<Arc<[u32]>> {
+    match matrix.filter(|_| pilots.is_none()) {
+        Some(k) => grounded((&**k).into()).map(Arc::from),
+        None => Ok(Arc::from([])),
+    }
 }
 
 /// Bodies, their plans, and the bodies whose factors they use.

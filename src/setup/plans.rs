@@ -2,22 +2,29 @@
 
 use std::sync::Arc;
 
-use crate::body::{Body, Digits, GeneralizedInverse, Modes, Plan};
+use crate::body::{Body, Digits, GeneralizedInverse, Modes, Pilots, Plan};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
 use crate::model::Model;
 use crate::progress::{SetupPart, Watch};
+use crate::setup::prepared::PreparedBody;
 
 /// Mean fraction of a setup completed after the null spaces.
 const NULL_SPACES: f64 = 0.05;
 
 /// Null spaces and fixing dofs of the pending bodies.
-pub(super) fn plans(model: &Model, pending: &[usize], watch: &mut Watch) -> Result<Vec<Plan>> {
+pub(super) fn plans(
+    model: &Model,
+    pending: &[usize],
+    bodies: &[PreparedBody],
+    watch: &mut Watch,
+) -> Result<Vec<Plan>> {
     let tolerance = model.settings.null_space_tolerance;
     let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
     let find = |k: usize| {
         let (p, body) = (pending[k], &model.bodies[pending[k]].body);
-        plan(body, tolerance, model.is_piece(p)).map_err(|e| of_coordinates(body, e).body(p))
+        plan(body, &bodies[p].pilots, tolerance, model.is_piece(p))
+            .map_err(|e| of_coordinates(body, e).body(p))
     };
     let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
     watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
@@ -45,10 +52,13 @@ pub(super) fn weights(model: &Model, bodies: &[usize]) -> Vec<f64> {
 }
 
 /// Null space and fixing dofs of a body, found before any factorisation.
-fn plan(body: &Body, tolerance: f64, is_piece: bool) -> Result<Plan> {
+fn plan(body: &Body, pilots: &Pilots, tolerance: f64, is_piece: bool) -> Result<Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
     let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
     let k = Multiple { matrix, by: 1.0 / body.unit() };
+    if let Some(metric) = pilots {
+        return Plan::of_pilots(k, metric);
+    }
     let fixing = body.fixing.as_deref();
     if let Some(given) = &body.null_space {
         return GeneralizedInverse::plan_with(k, given, tolerance, fixing);

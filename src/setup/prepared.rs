@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::body::{GeneralizedInverse, Symbolic};
+use crate::body::{GeneralizedInverse, Pilots, Symbolic};
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
@@ -27,6 +27,8 @@ pub struct Prepared {
 pub struct PreparedBody {
     of: BodyRevisions,
     pub inverse: Option<Inverse>,
+    /// D~ of its unknowns if they are carried: K+ holds them.
+    pub pilots: Pilots,
     /// The last analysis of a matrix with this pattern.
     pub symbolic: Option<Arc<Symbolic>>,
     /// Keys of pattern and values, if already computed.
@@ -118,6 +120,14 @@ impl Prepared {
         if changed {
             let inverses = self.bodies.iter_mut().filter_map(|own| own.inverse.as_mut());
             inverses.filter_map(|inverse| inverse.operator.as_mut()).for_each(Kept::only_whole);
+        }
+    }
+
+    /// Takes the carried unknowns of every body; drops K+ of those that hold others.
+    pub(super) fn carry(&mut self, pilots: Vec<Pilots>) {
+        for (own, pilots) in self.bodies.iter_mut().zip(pilots) {
+            own.inverse.take_if(|_| own.pilots != pilots);
+            own.pilots = pilots;
         }
     }
 

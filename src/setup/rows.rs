@@ -23,7 +23,7 @@ pub struct DualRows {
     pub contact: usize,
     /// The first tangential row of the stack.
     pub tangential: usize,
-    /// Some row joins bodies with very different stiffnesses at the row.
+    /// Some row joins bodies with very different stiffnesses at the row, or some unknown is carried.
     pub uneven: bool,
 }
 

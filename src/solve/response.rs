@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-use crate::certificate::{metric, Data, Response};
+use crate::certificate::{Data, Response};
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::vector::dot;
@@ -52,13 +52,13 @@ impl ByInverse<'_> {
     /// this is at most `g'K+ g`, the work of the load on the body alone: v = K+ g makes it large, and an inexact K+
     /// cannot make it too large.
     fn work_of(&self, mut load: Vec<f64>) -> Result<f64> {
-        let metric = metric(self.data, load.len());
+        let (metric, unit) = (&self.ready.rows.metric, self.ready.island.unit);
         for body in &self.data.bodies {
             let range = body.range();
             let resultants = body.null_space.mul_transposed(&load[range.clone()]);
             let mut rigid = zeros(range.len(), "the work of a load")?;
             body.null_space.mul_add(1.0 / body.unit, &resultants, &mut rigid);
-            range.for_each(|j| load[j] -= metric[j] * rigid[j - body.start]);
+            range.for_each(|j| load[j] -= unit * metric[j] * rigid[j - body.start]);
         }
         let motion = self.ready.displacement(self.threads, &load)?;
         let mut work = 0.0;

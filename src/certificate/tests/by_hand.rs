@@ -270,3 +270,31 @@ fn what_the_loads_move_is_asked_for_only_where_it_may_excuse_a_gap() {
     assert_eq!(spring(1.0, 0.0).judged(&point(0.75, -1.0)).1, 0, "a force of the wrong sign");
     assert_eq!(spring(1.0, 0.0).judged(&point(0.5, 0.0)).1, 2, "the work and the row");
 }
+
+/// A loaded spring at its obstacle, and a roller of two unknowns between it and a wall that just touches both: forces there that
+/// other solvers leave, and loads that Newton's method leaves, are none; larger ones have to balance.
+#[test]
+fn what_rounding_leaves_on_a_part_without_load_is_nothing() {
+    let judged = |load: f64, forces: [f64; 2]| {
+        let spring = chain(&[], &[(0, 4.0)]).loaded(&[(0, 2.0)]);
+        let roller = chain(&[1.0], &[]).loaded(&[(0, load)]);
+        let rows = [vec![(0, 1.0)], vec![(0, 1.0), (1, -1.0)], vec![(2, 1.0)]];
+        let contact = rows.into_iter().zip([0.25, 0.25, 0.0]).map(|(row, gap)| (row, gap, 0.0)).collect();
+        let model = DenseModel {
+            parts: vec![spring, roller],
+            contact,
+            active: vec![0, 1, 2],
+            ..DenseModel::default()
+        };
+        let lambda = vec![1.0, forces[0], forces[1]];
+        model.certificate(&DenseAnswer { u: vec![0.25, 0.0, 0.0], lambda, mu: vec![], tangential: vec![] })
+    };
+    for (load, forces) in [(0.0, [0.0; 2]), (0.0, [1e-13, 3e-13]), (1e-17, [0.0; 2]), (1e-17, [2e-13, 1e-13])]
+    {
+        let passed = judged(load, forces);
+        assert!(passed.passed(), "{load:e} {forces:?}: {passed:?}");
+    }
+    for (load, forces) in [(0.0, [1e-9, 3e-9]), (1e-9, [0.0; 2])] {
+        assert!(!judged(load, forces).passed(), "{load:e} {forces:?}");
+    }
+}

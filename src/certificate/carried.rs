@@ -1,0 +1,262 @@
+//! Unknowns that rows hold better than K, such as pilots and reference nodes with dummy stiffness, and the metric D~ in which they
+//! count with what their rows give them:
+//!
+//! ```text
+//! D~_j = D_j + sum_i b_ij^2 / (sum_l b_il^2 / D~_l + C_i),   l outside the cluster of j and not found together with j
+//! ```
+//!
+//! from the stiffest outward. A row to the ground or within a cluster adds nothing, and D~ = D for all other unknowns.
+
+use std::collections::HashMap;
+
+use crate::body::Stiffness;
+use crate::certificate::grounded::each_entry;
+use crate::constraints::RowSet;
+use crate::error::Result;
+use crate::linalg::graph::joined;
+use crate::platform::memory::{filled, zeros};
+
+/// Rows give a carried unknown more than this times its own stiffness: with a smaller ratio kp / k an error of 1e-6 in a
+/// force moves a gap by more than 1e-8 F / kp.
+const CARRIED: f64 = 1e2;
+/// Most unknowns of a cluster: those of a node. Larger clusters, and those that rows hold in part, deform, as rubber on steel
+/// does.
+const CLUSTER: usize = 6;
+const WHAT: &str = "the metric of an island";
+
+/// A body: its first unknown in the island, its K, and the metric of unknowns without stiffness.
+pub type Metered<'a> = (usize, Stiffness<'a>, f64);
+
+/// `D~ / unit` over all unknowns.
+pub struct Metric {
+    pub values: Vec<f64>,
+    /// Carried unknowns, ascending.
+    pub carried: Vec<usize>,
+}
+
+/// How far the search for carried unknowns has come at an unknown.
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    Open,
+    /// Held by rows better than by K, if its rows confirm it.
+    Found,
+    Carried,
+    /// It deforms with its cluster, or what seems to hold it is not much stiffer.
+    Own,
+}
+
+impl Metric {
+    /// For the rows of the island; a row with an infinite gap holds nothing.
+    pub fn of(bodies: &[Metered], rows: [&RowSet; 3], unit: f64) -> Result<Self> {
+        let n = bodies.last().map_or(0, |(start, k, _)| start + k.order());
+        let (mut values, mut stiffness) = (zeros(n, WHAT)?, zeros(n, WHAT)?);
+        for (start, k, without) in bodies {
+            for i in 0..k.order() {
+                values[start + i] = k.metric(i, *without) / unit;
+                stiffness[start + i] = k.metric(i, 0.0) / unit;
+            }
+        }
+        let mut search = Search { rows, unit, stiffness, state: filled(n, State::Open, WHAT)? };
+        if !search.found(|_, _| false).is_empty() {
+            let clusters = Clusters::of(bodies, n)?;
+            loop {
+                let mut found = search.found(|j, l| clusters.of[j] == clusters.of[l]);
+                if found.is_empty() {
+                    break;
+                }
+                clusters.keep_whole(&mut found, |j| search.state[j] = State::Own);
+                found.iter().for_each(|&j| search.state[j] = State::Found);
+                search.carry(found, &clusters)?;
+            }
+        }
+        let carried: Vec<usize> = (0..n).filter(|&j| search.state[j] == State::Carried).collect();
+        carried.iter().for_each(|&j| values[j] = search.stiffness[j]);
+        Ok(Self { values, carried })
+    }
+}
+
+struct Search<'a> {
+    rows: [&'a RowSet; 3],
+    unit: f64,
+    /// D~ / unit as far as it is known, n; 0 without stiffness.
+    stiffness: Vec<f64>,
+    state: Vec<State>,
+}
+
+impl Search<'_> {
+    /// Unknown and `b_ij^2 / D~_j` of the entries of every row, and `C_i`, without unit.
+    fn each_row(&self, mut visit: impl FnMut(&[(usize, f64, f64)], f64)) {
+        let mut row = Vec::new();
+        for set in self.rows {
+            for i in (0..set.len()).filter(|&i| set.is_finite(i)) {
+                row.clear();
+                row.extend(set.matrix.row(i).map(|(j, b)| (j, b * b, b * b / self.stiffness[j])));
+                visit(&row, self.unit * set.compliance[i]);
+            }
+        }
+    }
+
+    /// Unknowns that yield more than `CARRIED` times as much as another unknown of one of their rows, not `together` with
+    /// it.
+    fn found(&self, together: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+        let mut found = Vec::new();
+        self.each_row(|row, _| {
+            let holds = |j: usize, yields: f64, (l, _, other): &(usize, f64, f64)| {
+                *other > 0.0 && yields > CARRIED * other && !together(j, *l)
+            };
+            let least = row.iter().map(|entry| entry.2).fold(f64::INFINITY, f64::min);
+            for &(j, _, yields) in row.iter().filter(|entry| entry.2 > CARRIED * least) {
+                if self.state[j] == State::Open && row.iter().any(|other| holds(j, yields, other)) {
+                    found.push(j);
+                }
+            }
+        });
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// Gives these unknowns D~, without those to which their rows give less than `CARRIED` times their stiffness.
+    fn carry(&mut self, mut found: Vec<usize>, clusters: &Clusters) -> Result<()> {
+        loop {
+            let mut given = zeros(self.state.len(), WHAT)?;
+            self.each_row(|row, compliance| {
+                let is_found = |entry: &&(usize, f64, f64)| self.state[entry.0] == State::Found;
+                for (j, square, _) in row.iter().filter(is_found) {
+                    let others = row.iter().filter(|entry| !is_found(entry));
+                    let others = others.filter(|entry| clusters.of[entry.0] != clusters.of[*j]);
+                    let (count, yielding) =
+                        others.fold((0, compliance), |(count, sum), entry| (count + 1, sum + entry.2));
+                    if count > 0 {
+                        given[*j] += square / yielding;
+                    }
+                }
+            });
+            let holds = |j: &usize| given[*j] > CARRIED * self.stiffness[*j] && given[*j].is_normal();
+            let mut held: Vec<usize> = found.iter().copied().filter(holds).collect();
+            clusters.keep_whole(&mut held, |_| ());
+            if held.len() == found.len() {
+                for j in held {
+                    self.stiffness[j] += given[j];
+                    self.state[j] = State::Carried;
+                }
+                return Ok(());
+            }
+            found.iter().for_each(|&j| self.state[j] = State::Own);
+            held.iter().for_each(|&j| self.state[j] = State::Found);
+            found = held;
+        }
+    }
+}
+
+/// The clusters of all unknowns: those that K couples.
+struct Clusters {
+    of: Vec<usize>,
+    sizes: Vec<usize>,
+}
+
+impl Clusters {
+    fn of(bodies: &[Metered], n: usize) -> Result<Self> {
+        let (mut pairs, mut hidden) = (Vec::new(), Vec::new());
+        for (start, k, _) in bodies {
+            let couple = |i: usize, j: usize, v: f64| {
+                if i != j && v != 0.0 {
+                    pairs.push([start + i, start + j]);
+                }
+            };
+            if !each_entry(*k, couple) {
+                hidden.extend(*start..start + k.order());
+            }
+        }
+        let (of, count) = joined(n, pairs.into_iter().map(|pair| pair.into_iter()));
+        let mut sizes = filled(count, 0, WHAT)?;
+        of.iter().for_each(|&cluster| sizes[cluster] += 1);
+        // K+ of a body whose entries the host keeps cannot hold further unknowns
+        hidden.into_iter().for_each(|j| sizes[of[j]] += CLUSTER);
+        Ok(Self { of, sizes })
+    }
+
+    /// Keeps the unknowns of small clusters all of which are among these, and tells the others.
+    fn keep_whole(&self, found: &mut Vec<usize>, mut lose: impl FnMut(usize)) {
+        let mut counts = HashMap::new();
+        found.iter().for_each(|&j| *counts.entry(self.of[j]).or_insert(0) += 1);
+        let is_whole = |j: usize| {
+            let size = self.sizes[self.of[j]];
+            size <= CLUSTER && counts.get(&self.of[j]) == Some(&size)
+        };
+        found.iter().filter(|j| !is_whole(**j)).for_each(|j| lose(*j));
+        found.retain(|j| is_whole(*j));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::{Csr, Symmetric};
+    use std::sync::Arc;
+
+    fn rows(unknowns: usize, rows: &[&[(usize, f64)]]) -> RowSet {
+        let mut matrix = Csr::empty(unknowns);
+        rows.iter().for_each(|row| matrix.push_row(row.iter().copied()));
+        RowSet { matrix: Arc::new(matrix), rhs: vec![0.0; rows.len()], compliance: vec![0.0; rows.len()] }
+    }
+
+    /// Of springs to the ground, each a body.
+    fn metric(springs: &[f64], of_rows: &[&[(usize, f64)]]) -> Metric {
+        let matrices: Vec<Symmetric> =
+            springs.iter().map(|&k| Symmetric::new(vec![0, 1], vec![0], vec![k])).collect();
+        let bodies: Vec<Metered> = matrices.iter().enumerate().map(|(p, k)| (p, k.into(), 1.0)).collect();
+        let (rows, none) = (rows(springs.len(), of_rows), RowSet::default());
+        Metric::of(&bodies, [&rows, &none, &none], 1.0).unwrap()
+    }
+
+    #[test]
+    fn a_pilot_counts_with_the_springs_to_which_its_rows_join_it() {
+        for kp in [0.0, 1e-300, 1e-9] {
+            let of = metric(&[2.0, 3.0, kp], &[&[(0, -1.0), (2, 1.0)], &[(1, -1.0), (2, 2.0)], &[(2, 1.0)]]);
+            assert_eq!(of.carried, [2]);
+            assert_eq!(of.values, [2.0, 3.0, kp + 14.0]);
+        }
+        let of = metric(&[2.0, 3.0, 0.2], &[&[(0, -1.0), (2, 1.0)], &[(1, -1.0), (2, 2.0)]]);
+        assert!(of.carried.is_empty() && of.values == [2.0, 3.0, 0.2]);
+    }
+
+    #[test]
+    fn a_chain_of_pilots_is_carried_from_the_stiffest_outward() {
+        let link = |a: usize, b: usize| [(a, 1.0), (b, -1.0)];
+        let of = metric(&[2.0, 1e-9, 1e-9, 1e-9], &[&link(0, 1), &link(1, 2), &link(2, 3)]);
+        assert_eq!(of.carried, [1, 2, 3]);
+        assert!(of.values.iter().all(|d| (d - 2.0).abs() < 1e-8), "{:?}", of.values);
+    }
+
+    /// A displacement and a rotation of one node, in one row each with two springs.
+    #[test]
+    fn unknowns_of_one_node_do_not_hide_each_other() {
+        let of = metric(
+            &[1.0, 1.0, 1e-9, 1e-7],
+            &[&[(0, -1.0), (2, 1.0), (3, 2.0)], &[(1, -1.0), (2, 1.0), (3, -2.0)]],
+        );
+        assert_eq!(of.carried, [2, 3]);
+        assert_eq!(of.values, [1.0, 1.0, 2.0 + 1e-9, 8.0 + 1e-7]);
+    }
+
+    #[test]
+    fn clusters_that_rows_hold_in_part_or_of_more_unknowns_deform() {
+        let chain = |n: usize| {
+            let mut k = Symmetric::empty();
+            (0..n).for_each(|i| {
+                k.push_row((i > 0).then(|| (i - 1, -1e-9)).into_iter().chain([(i, 2e-9)]));
+            });
+            k
+        };
+        let (stiff, none) = (Symmetric::new(vec![0, 1], vec![0], vec![1.0]), RowSet::default());
+        for (n, held, carried) in [(6, 6, true), (6, 5, false), (7, 7, false)] {
+            let soft = chain(n);
+            let bodies: Vec<Metered> = vec![(0, (&stiff).into(), 1.0), (1, (&soft).into(), 1.0)];
+            let entries: Vec<_> = (1..=held).map(|j| [(0, 1.0), (j, -1.0)]).collect();
+            let rows = rows(n + 1, &entries.iter().map(|row| &row[..]).collect::<Vec<_>>());
+            let of = Metric::of(&bodies, [&none, &rows, &none], 1.0).unwrap();
+            assert_eq!(of.carried, if carried { (1..=n).collect() } else { vec![] });
+        }
+    }
+}

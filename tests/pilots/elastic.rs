@@ -1,0 +1,68 @@
+//! An elastic punch, floating, whose upper nodes are tied to a pilot with two displacements and a rotation, on an elastic
+//! block: the forces are those of a pilot without stiffness.
+
+use decks::{Block, Csr, Rows};
+use feti_contact::solver::{Problem, RowKind, SparseInput, Storage};
+
+use crate::{assert_near, forces, solved};
+
+const E: f64 = 1e6;
+
+/// The forces with `n` elements along the contact.
+fn pressed(n: usize, kp: f64) -> Vec<f64> {
+    let size = 1.0 / n as f64;
+    let (below, above) = (n / 4 + 1, n / 8 + 1);
+    let block = |rows: usize, y: f64, young: f64| Block {
+        dimension: 2,
+        elements: [n, rows, 1],
+        size: [1.0, rows as f64 * size, 1.0],
+        origin: [0.0, y, 0.0],
+        young,
+        ..Block::default()
+    };
+    let (base, punch) = (block(below, 0.0, E), block(above, below as f64 * size, 10.0 * E));
+    let (held, free) = (base.floating().body, punch.floating().body);
+    let mut problem = Problem::new();
+    let add = |problem: &mut Problem, k: &Csr, load: &[f64]| {
+        let body = problem.add_body(load.len()).unwrap();
+        let col: Vec<i64> = k.col.iter().map(|&j| j as i64).collect();
+        let input = SparseInput { ptr: &k.ptr, col: &col, val: &k.val, storage: Storage::Full };
+        problem.set_stiffness(body, input).unwrap();
+        problem.set_load(body, load).unwrap();
+    };
+    add(&mut problem, &held.stiffness, &vec![0.0; held.dofs()]);
+    add(&mut problem, &free.stiffness, &vec![0.0; free.dofs()]);
+    let pilot: Vec<f64> = (0..9).map(|at| if at % 4 == 0 { kp } else { 0.0 }).collect();
+    add(&mut problem, &Csr::from_dense(3, &pilot), &[0.0, -100.0, 3.0]);
+    let (first, led) = (held.dofs(), held.dofs() + free.dofs());
+    let (mut contact, mut equalities) = (Rows::none(led + 3), Rows::none(led + 3));
+    for x in 0..=n {
+        let (foot, top) = (2 * base.node([x, 0, 0]), first + 2 * punch.node([x, above, 0]));
+        let (lower, upper) = (2 * base.node([x, below, 0]) + 1, first + 2 * punch.node([x, 0, 0]) + 1);
+        let arm = x as f64 * size - 0.5;
+        contact.push(&[(lower, 1.0), (upper, -1.0)], 1e-4 * arm * arm);
+        [foot, foot + 1].into_iter().for_each(|dof| equalities.push(&[(dof, 1.0)], 0.0));
+        // the pilot is 1 above the upper nodes
+        equalities.push(&[(top, 1.0), (led, -1.0), (led + 2, -1.0)], 0.0);
+        equalities.push(&[(top + 1, 1.0), (led + 1, -1.0), (led + 2, -arm)], 0.0);
+    }
+    equalities.push(&[(led, 1.0)], 0.0);
+    for (kind, rows) in [(RowKind::Inequality, &contact), (RowKind::Equality, &equalities)] {
+        let all: Vec<Vec<(usize, f64)>> = (0..rows.rhs.len()).map(|i| rows.matrix.row(i).collect()).collect();
+        let all: Vec<_> = all.iter().zip(&rows.rhs).map(|(row, rhs)| (&row[..], *rhs)).collect();
+        crate::add_rows(&mut problem, kind, &all);
+    }
+    solved(&mut problem, &format!("{n} elements, kp {kp:e}"));
+    forces(&problem)[0].clone()
+}
+
+#[test]
+fn the_forces_below_a_punch_do_not_depend_on_the_stiffness_of_its_pilot() {
+    for n in [10, 40] {
+        let right = pressed(n, 0.0);
+        assert!((right.iter().sum::<f64>() - 100.0).abs() < 1e-9);
+        for kp in [1e-300, 1e-20, 1e-9, 1e-6] {
+            assert_near(&pressed(n, kp), &right, 1e-9, &format!("{n} elements, kp {kp:e}"));
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Unknowns that rows hold far better than K: pilots and reference nodes with a dummy stiffness kp. Their answers follow by
+//! hand as kp -> 0, and differ from it by kp / k; `feti_check` refuses forces that are wrong by 1e-6.
+//!
+//! | module | claims |
+//! |---|---|
+//! | [`by_hand`] | pressed, moved and tied pilots, chains, a rigid node with rotation, at every kp |
+//! | [`changes`] | rows and stiffnesses that change whether an unknown is carried |
+//! | [`elastic`] | an elastic punch on an elastic block, led by a pilot |
+
+mod by_hand;
+mod changes;
+mod elastic;
+
+use feti_contact::solver::{Outcome, Problem, Report, RowKind, RowsInput, Storage};
+
+/// Dummy stiffnesses beside springs of about 1e6.
+pub const DUMMY: [f64; 9] = [0.0, 1e-300, 1e-20, 1e-9, 1e-6, 1e-3, 1.0, 1e2, 1e4];
+
+/// A body with a dense matrix, given by rows, and its load.
+pub fn add_body(problem: &mut Problem, stiffness: &[f64], load: &[f64]) {
+    let n = load.len();
+    let body = problem.add_body(n).unwrap();
+    problem.set_stiffness_dense(body, n, stiffness, n, Storage::Full).unwrap();
+    problem.set_load(body, load).unwrap();
+}
+
+/// Rows over all unknowns, each with its entries and right-hand side.
+pub fn add_rows(problem: &mut Problem, kind: RowKind, rows: &[(&[(usize, f64)], f64)]) {
+    let (mut ptr, mut dof, mut val) = (vec![0], Vec::new(), Vec::new());
+    for (entries, _) in rows {
+        entries.iter().for_each(|&(j, v)| {
+            dof.push(j as i64);
+            val.push(v);
+        });
+        ptr.push(dof.len());
+    }
+    let rhs: Vec<f64> = rows.iter().map(|row| row.1).collect();
+    let input = RowsInput { ptr: &ptr, body: None, dof: &dof, val: &val, rhs: Some(&rhs) };
+    problem.add_rows(kind, input).unwrap();
+}
+
+/// Solves; the certificate must hold.
+pub fn solved(problem: &mut Problem, what: &str) -> Report {
+    let report = problem.solve().unwrap_or_else(|error| panic!("{what}: {error}"));
+    assert_eq!(report.outcome, Outcome::Solved, "{what}: {report:?}");
+    assert!(report.certificate.passed(), "{what}: {:?}", report.certificate);
+    report
+}
+
+/// Forces of contact rows and of equality rows.
+pub fn forces(problem: &Problem) -> [Vec<f64>; 2] {
+    [RowKind::Inequality, RowKind::Equality].map(|kind| problem.multipliers(kind).unwrap().to_vec())
+}
+
+/// Equal to `tolerance` of the largest expected value.
+pub fn assert_near(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    let size = expected.iter().fold(0.0f64, |size, v| size.max(v.abs()));
+    let error = found.iter().zip(expected).fold(0.0f64, |error, (a, b)| error.max((a - b).abs()));
+    assert!(error <= tolerance * size, "{what}: {error:e} of {size:e}: {found:?}, expected {expected:?}");
+}
