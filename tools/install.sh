@@ -117,7 +117,10 @@ static() {
     wrap=
     case $(uname -sm) in
     Linux\ x86_64 | Linux\ aarch64)
-        for name in malloc calloc realloc posix_memalign free __cxa_thread_atexit_impl; do wrap="$wrap --wrap=$name"; done ;;
+        for name in malloc calloc realloc posix_memalign free __cxa_thread_atexit_impl; do wrap="$wrap --wrap=$name"; done
+        # the references of the library are weak, which would leave these two empty in a wholly static program
+        echo '.section .note.GNU-stack,"",%progbits; .data; .quad __real_posix_memalign, __real___cxa_thread_atexit_impl' |
+            ${CC:-cc} -c -x assembler - -o "$work/strong.o" && wrap="$wrap $work/strong.o" ;;
     esac
     if "$OBJCOPY" --strip-debug -R .llvmbc -R .llvmcmd "$1" "$work/members.a" &&
         "$LD" -r $wrap --whole-archive "$work/members.a" -o "$work/members.o" &&
