@@ -87,8 +87,8 @@ fn supports_may_hold_some_soft_motions_or_all() {
         let mut problem = placed(&deck, true, 0.0);
         let (forces, u) = errors(&deck, &solved(&mut problem).unwrap());
         assert!(forces <= 1e-8 && u <= 1e-8, "support {support:e}: forces {forces:.1e} u {u:.1e}");
-        // one support leaves the rotation about it
-        let soft: &[usize] = if nodes == 1 { &[0, 1] } else { &[1] };
+        // one support leaves the rotation about it, and two as stiff as K resist it by less than a tenth
+        let soft: &[usize] = if nodes == 1 || support == 1.0 { &[0, 1] } else { &[1] };
         assert_eq!(problem.findings().unwrap().soft, soft, "support {support:e} at {nodes} nodes");
     }
 }
