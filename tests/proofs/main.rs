@@ -20,6 +20,8 @@ mod resultants;
 mod small;
 mod ties;
 mod unloading;
+#[path = "../support/warnings.rs"]
+mod warnings;
 
 use decks::{Csr, Deck, Rows};
 

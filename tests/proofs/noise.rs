@@ -1,11 +1,11 @@
 //! Right-hand sides and entries that are rounding demand nothing, and refuse nothing.
 
-use std::sync::{Arc, Mutex};
-
 use feti_contact::error::{Kind, Result};
 use feti_contact::solver::{
-    FrictionInput, LogLevel, Modes, Outcome, Problem, Report, RowKind, RowsInput, SparseInput, Storage,
+    FrictionInput, Modes, Outcome, Problem, Report, RowKind, RowsInput, SparseInput, Storage,
 };
+
+use crate::warnings::told;
 
 /// `.3 - (.1 + .2)`
 const RESIDUE: f64 = -1.0 / (1u64 << 54) as f64;
@@ -132,16 +132,4 @@ fn a_row_of_rounding_beside_rows_of_one_is_legal_but_told() {
     let heard = heard.lock().unwrap();
     assert!(heard.contains("contact row 1: its entries are below"), "{heard}");
     assert!(heard.contains("tangential row 0: its entries are below"), "{heard}");
-}
-
-/// The warnings of the log.
-fn told(problem: &mut Problem) -> Arc<Mutex<String>> {
-    let told = Arc::new(Mutex::new(String::new()));
-    let lines = Arc::clone(&told);
-    let listener = Box::new(move |_: LogLevel, line: &str| {
-        lines.lock().unwrap().push_str(line);
-        0
-    });
-    problem.on_log(Some((LogLevel::Result, listener)));
-    told
 }

@@ -30,6 +30,8 @@ mod plane;
 mod presolve;
 mod slides;
 mod travel;
+#[path = "../support/warnings.rs"]
+mod warnings;
 
 use decks::Deck;
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};

@@ -1,12 +1,11 @@
 //! Bodies that slide along rows whose normals have few digits: what resists a motion only by noise of the normals neither
 //! holds it nor moves it, and no slide is silent.
 
-use std::sync::{Arc, Mutex};
-
 use decks::random::Random;
 use decks::{Block, Body, Csr, Deck};
-use feti_contact::solver::{LogLevel, Outcome, Problem};
+use feti_contact::solver::{Outcome, Problem};
 
+use crate::warnings::told;
 use crate::{answer, difference, largest, problem, solved};
 
 /// A block (x, y_1, y_2) with a spring between y_1 and y_2 that presses with 1 and 1.3 on rows `t_i x - y_i <= 0`. For t = 0
@@ -53,18 +52,6 @@ fn a_slide_along_slopes_that_may_be_noise_is_told_and_ends_with_the_accuracy_of_
         assert!(difference(&found.lambda, &[1.0, 1.3]) < 1e-5, "{slopes:?} {:?}", found.lambda);
         assert!(largest(&found.u) < 1e-3, "{slopes:?} {:?}", found.u);
     }
-}
-
-/// The warnings of the log.
-fn told(problem: &mut Problem) -> Arc<Mutex<String>> {
-    let told = Arc::new(Mutex::new(String::new()));
-    let lines = Arc::clone(&told);
-    let listener = Box::new(move |_: LogLevel, line: &str| {
-        lines.lock().unwrap().push_str(line);
-        0
-    });
-    problem.on_log(Some((LogLevel::Result, listener)));
-    told
 }
 
 /// A floating block of 4 x 3 elements turned by an angle, pressed on the plane below it by uneven loads normal to the plane;
