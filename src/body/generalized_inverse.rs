@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::body::carried::{self, Carried, Motions};
 use crate::body::misfit::Misfit;
 use crate::body::null_space::ROUNDING as KNOWN;
+use crate::body::pilots::Pilots;
 use crate::body::probe::{known_to, Factor};
 use crate::body::rounded::Rounded;
 use crate::body::soft::{known_to_entries, soft_motions};
@@ -205,17 +206,22 @@ impl GeneralizedInverse {
         Ok(form)
     }
 
-    /// Measures the stiffness of the vectors if they are `soft`, with their metric if it is not D, otherwise the error of
-    /// the null space; `rigid` motions are carried.
+    /// Measures the stiffness of the vectors if they are `soft`, otherwise the error of the null space; adds the motions of
+    /// `pilots`, and carries `rigid` motions.
     pub(super) fn judged_by(
         self,
         k: &Multiple,
-        soft: Option<Option<&[f64]>>,
+        soft: bool,
+        pilots: Option<&Pilots>,
         rigid: Option<&Matrix>,
     ) -> Result<Self> {
-        let judged = match soft {
-            Some(weights) => self.softened(k, weights)?,
-            None => self.measured(k)?,
+        let judged = if soft { self.softened(k)? } else { self.measured(k)? };
+        let judged = match pilots {
+            Some(pilots) => {
+                let are_null = judged.stiffness.is_empty();
+                pilots.lead(judged, k, are_null)?
+            }
+            None => judged,
         };
         match rigid {
             Some(rigid) => judged.with_carried(k, rigid),
@@ -240,8 +246,9 @@ impl GeneralizedInverse {
     }
 
     /// Replaces the vectors by soft motions and their stiffness.
-    fn softened(mut self, k: &Multiple, weights: Option<&[f64]>) -> Result<Self> {
-        (self.null_space, self.stiffness) = soft_motions(&self.factor, (k, weights), self.null_space)?;
+    fn softened(mut self, k: &Multiple) -> Result<Self> {
+        let none = Matrix::zeros(k.order(), 0)?;
+        (self.null_space, self.stiffness) = soft_motions(&self.factor, (k, None), none, self.null_space)?;
         self.error = known_to_entries(&self.factor, k, &self.null_space)?;
         Ok(self)
     }

@@ -39,6 +39,11 @@ impl Known {
         }
     }
 
+    /// Number of motions with those of carried unknowns.
+    pub(super) fn motions(&self) -> usize {
+        self.null_space.cols + self.pilots.as_ref().map_or(0, |pilots| pilots.carried.len())
+    }
+
     /// Largest number of motions that this body may have.
     pub(super) fn most_motions(&self) -> usize {
         self.null_space.cols + if self.is_free_to_choose() { FURTHER } else { 0 }
@@ -50,7 +55,7 @@ impl Known {
 
     /// The dofs that hold the motions of this K+ best, if the present dofs hold them badly.
     pub(super) fn better(&self, made: &GeneralizedInverse) -> Result<Option<Vec<usize>>> {
-        if !self.is_free_to_choose() || made.stiffness.iter().all(|stiffness| *stiffness >= 0.0) {
+        if !self.is_free_to_choose() || self.pilots.is_some() || made.stiffness.iter().all(|stiffness| *stiffness >= 0.0) {
             return Ok(None);
         }
         let root = self.k.roots()?;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::body::fixing::hold_as_well;
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Symbolic};
 use crate::body::misfit::Misfit;
+use crate::body::pilots::Pilots;
 use crate::body::null_space::{NullSpaceInput, ROUNDING as KNOWN};
 use crate::body::probe::{probe, Factor};
 use crate::body::spectrum::Doubt;
@@ -21,8 +22,8 @@ pub struct Known {
     pub(super) given: bool,
     /// K may have positive or negative stiffness along the vectors, which need not be exact.
     pub(super) soft: bool,
-    /// The metric of soft motions, n; D if not given.
-    pub(super) weights: Option<Arc<[f64]>>,
+    /// Unknowns that rows carry, held after those of the null space.
+    pub(super) pilots: Option<Pilots>,
     /// Rigid motions for the coarse problem, whether K resists them or not.
     pub(super) rigid: Option<Matrix>,
     pub(super) symbolic: Option<Arc<Symbolic>>,
@@ -45,24 +46,27 @@ pub(super) enum Retry {
 impl Known {
     /// `given`: the host gave the fixing dofs.
     pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
-        let (soft, weights, rigid, symbolic) = (false, None, None, None);
+        let (soft, pilots, rigid, symbolic) = (false, None, None, None);
         let (doubt, misfit, retry) = (None, None, None);
-        Self { k, null_space, error, fixing, given, soft, weights, rigid, symbolic, doubt, misfit, retry }
+        Self { k, null_space, error, fixing, given, soft, pilots, rigid, symbolic, doubt, misfit, retry }
     }
 
     /// Takes over dofs chosen for other values, unless they hold this body much worse than its own dofs. Returns whether
     /// it did.
     pub(super) fn follow(&mut self, dofs: &[usize]) -> Result<bool> {
+        let carried = self.pilots.as_ref().map_or(&[][..], |pilots| &pilots.carried);
+        let Some(dofs) = dofs.strip_suffix(carried) else { return Ok(false) };
+        let own = &self.fixing[..self.fixing.len() - carried.len()];
         let sorted = |dofs: &[usize]| {
             let mut dofs = dofs.to_vec();
             dofs.sort_unstable();
             dofs
         };
-        let same = sorted(dofs) == sorted(&self.fixing);
-        if !same && (self.given || !hold_as_well(&self.null_space, &self.k.roots()?, dofs, &self.fixing)?) {
+        let same = sorted(dofs) == sorted(own);
+        if !same && (self.given || !hold_as_well(&self.null_space, &self.k.roots()?, dofs, own)?) {
             return Ok(false);
         }
-        self.fixing = dofs.to_vec();
+        self.fixing = [dofs, carried].concat();
         Ok(true)
     }
 
@@ -109,6 +113,6 @@ impl Known {
             carried: None,
             near: None,
         };
-        inverse.judged_by(&self.k, self.soft.then_some(self.weights.as_deref()), self.rigid.as_ref())
+        inverse.judged_by(&self.k, self.soft, self.pilots.as_ref(), self.rigid.as_ref())
     }
 }

@@ -1,24 +1,99 @@
-//! Carried unknowns: bodies of a few unknowns that rows hold far better than K, such as pilots with dummy stiffness. Their
-//! unknowns are held, K+ = 0, and their motions are soft motions, as in [`soft`](crate::body::soft), with `R'D~R = I` and
-//! S = R'K R. Otherwise u would be the difference of forces that nearly cancel, divided by a stiffness that means nothing.
+//! Carried unknowns x: those that rows hold far better than K, such as pilots with dummy stiffness. With them held, as in (14)-(15),
+//! K+ is 0 there, and their motions are soft motions, as in [`soft`](crate::body::soft), with `R'D~R = I` and S = R'K R. Otherwise u
+//! would be the difference of forces that nearly cancel, divided by a stiffness that means nothing.
 
 use std::sync::Arc;
 
+use crate::body::fixing::fixing_dofs;
+use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::known::Known;
 use crate::body::null_space::ROUNDING;
 use crate::body::plan::Plan;
+use crate::body::soft::{known_to_entries, soft_motions};
 use crate::error::Result;
-use crate::linalg::{Matrix, Multiple};
+use crate::linalg::{Matrix, Multiple, Symmetric};
 
-/// The metric D~ of all unknowns of a body that rows carry, in the unit of its K; none of other bodies.
-pub type Pilots = Option<Arc<[f64]>>;
+/// The carried unknowns of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pilots {
+    /// D~ of all unknowns, in the unit of K.
+    pub metric: Arc<[f64]>,
+    /// Ascending.
+    pub carried: Arc<[usize]>,
+}
+
+impl Pilots {
+    /// The motions of single unknowns, n x carried.
+    fn motions(&self) -> Result<Matrix> {
+        let mut motions = Matrix::zeros(self.metric.len(), self.carried.len())?;
+        self.carried.iter().enumerate().for_each(|(j, &x)| motions.set(x, j, 1.0));
+        Ok(motions)
+    }
+
+    /// Rows carry all unknowns: the null space of K need not be known.
+    pub fn are_all(&self) -> bool {
+        self.carried.len() == self.metric.len()
+    }
+
+    /// The plan if they are all unknowns.
+    pub fn plan(self, k: Multiple) -> Result<Plan> {
+        let none = Matrix::zeros(k.order(), 0)?;
+        Plan::Known(Known::of(k, none, ROUNDING, Vec::new(), false)).with_pilots(Some(self))
+    }
+
+    /// K in the same pattern, with a unit spring for each of them in place of what couples them to other unknowns.
+    pub(super) fn without(&self, k: &Multiple) -> Result<Multiple> {
+        let is_carried = |i: usize| self.carried.binary_search(&i).is_ok();
+        let mut rest = Symmetric::with_room(k.order(), k.matrix.col.len(), "a body without its pilots")?;
+        for i in 0..k.order() {
+            let carried = is_carried(i);
+            let kept = |(j, v)| match carried || is_carried(j) {
+                true => (j, f64::from(u8::from(i == j))),
+                false => (j, v),
+            };
+            rest.push_row(k.lower_row(i).map(kept));
+        }
+        Ok(rest.into())
+    }
+
+    /// Adds their motions to those of K+, whose factor holds them. `are_null`: K does not resist the motions of K+.
+    pub(super) fn lead(
+        &self,
+        mut inverse: GeneralizedInverse,
+        k: &Multiple,
+        are_null: bool,
+    ) -> Result<GeneralizedInverse> {
+        let metric = Some(&*self.metric);
+        let (mut null, mut soft) = (inverse.null_space, self.motions()?);
+        if !are_null {
+            (0..soft.cols).for_each(|j| null.push_col(soft.col(j)));
+            (null, soft) = (Matrix::zeros(null.rows, 0)?, null);
+        }
+        (inverse.null_space, inverse.stiffness) = soft_motions(&inverse.factor, (k, metric), null, soft)?;
+        inverse.error = inverse.error.max(known_to_entries(&inverse.factor, k, &inverse.null_space)?);
+        Ok(inverse)
+    }
+}
 
 impl Plan {
-    /// The plan of a body whose unknowns are carried; its null space need not be known.
-    pub fn of_pilots(k: Multiple, metric: &Arc<[f64]>) -> Result<Self> {
-        let n = k.order();
-        let motions = Matrix::from_fn(n, n, |i, j| if i == j { metric[i].sqrt().recip() } else { 0.0 })?;
-        let known = Known::of(k, motions, ROUNDING, (0..n).collect(), false);
-        Ok(Self::Known(Known { soft: true, weights: Some(Arc::clone(metric)), ..known }))
+    /// Holds these unknowns as well.
+    pub fn with_pilots(self, pilots: Option<Pilots>) -> Result<Self> {
+        let Some(pilots) = pilots else { return Ok(self) };
+        Ok(match self {
+            Self::Known(known) => Self::Known(known.with_pilots(pilots)?),
+            Self::Search(search) => Self::Search(search.with_pilots(pilots)?),
+        })
+    }
+}
+
+impl Known {
+    fn with_pilots(mut self, pilots: Pilots) -> Result<Self> {
+        if pilots.carried.iter().any(|x| self.fixing.contains(x)) {
+            let mut root = self.k.roots()?;
+            pilots.carried.iter().for_each(|&x| root[x] = 0.0);
+            (self.fixing, self.given) = (fixing_dofs(&self.null_space, &root)?, false);
+        }
+        self.fixing.extend(&*pilots.carried);
+        Ok(Self { pilots: Some(pilots), ..self })
     }
 }

@@ -8,6 +8,7 @@ use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, S
 use crate::body::known::{Known, Retry};
 use crate::body::misfit::{Misfit, RESISTED};
 use crate::body::null_space::{Modes, NullSpaceInput, Verified, ROUNDING as KNOWN};
+use crate::body::pilots::Pilots;
 use crate::body::probe::PROBE;
 use crate::body::search::Search;
 use crate::error::{Error, Kind, Result};
@@ -151,9 +152,9 @@ impl Plan {
     /// unless the null space of `other` was found in K or includes further motions.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
         match self {
-            Self::Known(known) if other.gap.is_none() && other.own_motions() == known.null_space.cols => {
+            Self::Known(known) if other.gap.is_none() && other.own_motions() == known.motions() => {
                 let misfit = known.held();
-                let Known { k, null_space, error, doubt, soft, weights, rigid, .. } = known;
+                let Known { k, null_space, error, doubt, soft, pilots, rigid, .. } = known;
                 let (rounding, stiffness) = (KNOWN, Vec::new());
                 let (carried, other) = (None, other.clone());
                 let own = GeneralizedInverse {
@@ -166,7 +167,7 @@ impl Plan {
                     carried,
                     ..other
                 };
-                let mut own = own.judged_by(&k, soft.then_some(weights.as_deref()), rigid.as_ref())?;
+                let mut own = own.judged_by(&k, soft, pilots.as_ref(), rigid.as_ref())?;
                 own.find_near(&k)?;
                 Ok(own)
             }
@@ -195,6 +196,7 @@ impl Plan {
                 }
                 Some(retry) => {
                     let (k, misfit, limit) = (known.k.clone(), known.misfit, retry.least_softness());
+                    let pilots = known.pilots.clone();
                     let most = match retry {
                         Retry::Search { .. } => known.most_motions(),
                         Retry::AllSoft(_) => known.null_space.cols,
@@ -202,7 +204,7 @@ impl Plan {
                     match known.execute(most) {
                         Ok(made) if made.inverse.softness >= limit => Ok(made),
                         Err(error) if !retry.follows(&error, misfit) => Err(error),
-                        _ => retry.execute(k, misfit),
+                        _ => retry.execute(k, misfit, pilots),
                     }
                 }
             },
@@ -229,22 +231,22 @@ impl Retry {
         }
     }
 
-    fn execute(self, k: Multiple, misfit: Option<Misfit>) -> Result<Factorised> {
-        let mut made = match self {
+    fn execute(self, k: Multiple, misfit: Option<Misfit>, pilots: Option<Pilots>) -> Result<Factorised> {
+        let planned = match self {
             Self::Search { tolerance, fixing } => {
                 let search = Search::new(k, tolerance, fixing.as_deref())?;
-                match misfit {
+                Plan::Search(match misfit {
                     Some(misfit) => search.instead_of(misfit),
                     None => search,
-                }
-                .execute()?
+                })
             }
             Self::AllSoft(NullSpaceInput { vectors, modes }) => {
                 let vectors = Kernel::of(&k, &vectors, f64::INFINITY)?.motions;
                 let input = NullSpaceInput { vectors, modes };
-                GeneralizedInverse::plan_all(k, &input, f64::INFINITY, None)?.execute()?
+                GeneralizedInverse::plan_all(k, &input, f64::INFINITY, None)?
             }
         };
+        let mut made = planned.with_pilots(pilots)?.execute()?;
         made.factorisations += 1;
         Ok(made)
     }

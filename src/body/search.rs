@@ -14,6 +14,7 @@ use crate::body::last::{spread, supported};
 use crate::body::misfit::Misfit;
 use crate::body::null_space::{exact, largest, refuse_overflow, Verified};
 use crate::body::part::{End, Soft};
+use crate::body::pilots::Pilots;
 use crate::body::probe::{known_to, probe, Factor, MOST_ROUNDING, SINGULAR};
 use crate::body::soft::{are_resisted, known_to_entries, soft_motions};
 use crate::body::spectrum::{cut, may_be_weak, measured, to_measure};
@@ -43,6 +44,8 @@ pub struct Search {
     digits: Option<Digits>,
     /// Otherwise, digits so few that the entries may be round numbers.
     few: Option<Digits>,
+    /// Unknowns that rows carry, and K; t includes them, and `k` does not couple them.
+    pilots: Option<(Pilots, Multiple)>,
     /// Coordinates that did not fit K.
     misfit: Option<Misfit>,
     /// The input of the analysis besides the pattern of K.
@@ -79,12 +82,24 @@ impl Search {
         let digits = Digits::of_least(&k.matrix, Digits::TOLD)?;
         let few = digits.filter(|digits| digits.are_few());
         let digits = digits.filter(|digits| !digits.are_few());
-        Ok(Self { k, tolerance, fixing, last, count, digits, few, misfit: None, layout, symbolic: None })
+        let (pilots, misfit, symbolic) = (None, None, None);
+        Ok(Self { k, tolerance, fixing, last, count, digits, few, pilots, misfit, layout, symbolic })
     }
 
     /// Notes that coordinates were given that do not fit.
     pub(super) fn instead_of(self, misfit: Misfit) -> Self {
         Self { misfit: Some(misfit), ..self }
+    }
+
+    /// Holds these unknowns as well.
+    pub(super) fn with_pilots(mut self, pilots: Pilots) -> Result<Self> {
+        self.last.extend(&*pilots.carried);
+        self.last.sort_unstable();
+        self.last.dedup();
+        let layout = Arc::new(Layout::Last(self.last.clone()));
+        let rest = pilots.without(&self.k)?;
+        let k = std::mem::replace(&mut self.k, rest);
+        Ok(Self { layout, pilots: Some((pilots, k)), symbolic: None, ..self })
     }
 
     pub fn analyse(&self) -> Result<Arc<Analysis>> {
@@ -127,9 +142,9 @@ impl Search {
                 }
                 Attempt::Missed(dof) => {
                     self.last.push(dof);
-                    let digits = self.digits;
+                    let (digits, pilots) = (self.digits, self.pilots.take());
                     self = Self::with(self.k, self.tolerance, self.fixing, self.last, 2 * self.count)?;
-                    self.digits = self.digits.or(digits);
+                    (self.digits, self.pilots) = (self.digits.or(digits), pilots);
                 }
             }
         }
@@ -243,12 +258,12 @@ impl Search {
         let tolerance = if soft.weak > 0 { f64::INFINITY } else { self.tolerance.max(soft.rounding) };
         let Verified { basis, .. } = exact(&self.k, &vectors, tolerance)?;
         let (null_space, stiffness) = self.resisted_softly(&factor, &soft, basis)?;
-        let softness = probe(&factor, &self.k, &fixing, r)?;
+        let softness = probe(&factor, &self.k, &fixing, fixing.len())?;
         let error = match stiffness.is_empty() {
             true => known_to(&factor, &self.k, &null_space)?,
             false => known_to_entries(&factor, &self.k, &null_space)?,
         };
-        Ok(GeneralizedInverse {
+        let inverse = GeneralizedInverse {
             null_space,
             stiffness,
             rounding: error.min(MOST_ROUNDING),
@@ -261,7 +276,11 @@ impl Search {
             factor,
             carried: None,
             near: None,
-        })
+        };
+        let Some((pilots, k)) = &self.pilots else { return Ok(inverse) };
+        let mut led = pilots.lead(inverse, k, false)?;
+        led.stiffness.iter_mut().for_each(|stiffness| *stiffness = stiffness.max(0.0));
+        Ok(led)
     }
 
     /// Soft motions and their stiffness, if weak springs hold some of the vectors or no gap separates these from a null
@@ -270,7 +289,8 @@ impl Search {
         if soft.weak == 0 && (self.digits.is_some() || !are_resisted(&self.k, &basis)?) {
             return Ok((basis, Vec::new()));
         }
-        let (motions, mut stiffness) = soft_motions(factor, (&self.k, None), basis)?;
+        let none = Matrix::zeros(basis.rows, 0)?;
+        let (motions, mut stiffness) = soft_motions(factor, (&self.k, None), none, basis)?;
         // negative stiffness this small is rounding, since the host has given no soft motions
         stiffness.iter_mut().for_each(|stiffness| *stiffness = stiffness.max(0.0));
         Ok((motions, stiffness))
@@ -296,11 +316,17 @@ impl Search {
 
     /// The dofs to hold.
     fn fixing_of(&self, soft: &Soft, vectors: &Matrix) -> Result<Vec<usize>> {
-        if let Some(given) = &self.fixing {
-            return given_dofs(vectors, &self.k.roots()?, given);
-        }
-        let chosen = fixing_dofs(&soft.vectors, &vec![1.0; self.last.len()])?;
-        Ok(chosen.into_iter().map(|at| self.last[at]).collect())
+        let carried = self.pilots.as_ref().map_or(&[][..], |(pilots, _)| &pilots.carried);
+        let is_carried = |dof: &usize| carried.binary_search(dof).is_ok();
+        let mut held = match self.fixing.as_ref().filter(|given| !given.iter().any(is_carried)) {
+            Some(given) => given_dofs(vectors, &self.k.roots()?, given)?,
+            None => {
+                let chosen = fixing_dofs(&soft.vectors, &vec![1.0; self.last.len()])?;
+                chosen.into_iter().map(|at| self.last[at]).collect()
+            }
+        };
+        held.extend(carried);
+        Ok(held)
     }
 
     /// A pivot of `K + E D_tt E'` that is not positive: K is indefinite, or t does not resist some null vector. The

@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::random::Random;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::norm_max;
+use crate::linalg::vector::{axpy, norm_max};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::filled;
 
@@ -37,15 +37,17 @@ pub fn are_resisted(k: &Multiple, r: &Matrix) -> Result<bool> {
     Ok(is_resisted)
 }
 
-/// R with the span of `vectors` at the held unknowns, `R'DR = I` and `R'K R = diag(lambda)`; and lambda, 0 if it is
-/// rounding. `weights`: the metric if it is not D.
+/// R with the span of `null` and of `vectors` at the held unknowns, `R'DR = I` and `R'K R = diag(lambda)`; and lambda, 0 if
+/// it is rounding or of a vector of `null`, which K does not resist. `weights`: the metric if it is not D.
 pub fn soft_motions(
     factor: &Factor,
     (k, weights): (&Multiple, Option<&[f64]>),
+    null: Matrix,
     vectors: Matrix,
 ) -> Result<(Matrix, Vec<f64>)> {
     let metric = |i: usize| weights.map_or(k.metric(i, 1.0), |weights| weights[i]);
-    let r = corrected(factor, k, vectors)?;
+    let null = orthonormal(metric, &null)?;
+    let r = without(metric, corrected(factor, k, vectors)?, &null);
     let mut r = corrected(factor, k, orthonormal(metric, &r)?)?;
     let found = Resistance::of(k, &r)?;
     if r.cols > 0 {
@@ -55,8 +57,22 @@ pub fn soft_motions(
     let found = Resistance::of(k, &r)?;
     let known = found.diagonal(&r).zip(&found.noise);
     let lambda = known.map(|(stiffness, noise)| if stiffness.abs() > *noise { stiffness } else { 0.0 });
-    let lambda = lambda.collect();
-    Ok((r, lambda))
+    let lambda = std::iter::repeat_n(0.0, null.cols).chain(lambda).collect();
+    let mut all = null;
+    (0..r.cols).for_each(|j| all.push_col(r.col(j)));
+    Ok((all, lambda))
+}
+
+/// The part of `vectors` orthogonal to the orthonormal `basis`.
+fn without(metric: impl Fn(usize) -> f64, mut vectors: Matrix, basis: &Matrix) -> Matrix {
+    for j in 0..vectors.cols {
+        for c in (0..basis.cols).chain(0..basis.cols) {
+            let (vector, of) = (vectors.col_mut(j), basis.col(c));
+            let share: f64 = vector.iter().zip(of).enumerate().map(|(i, (v, b))| metric(i) * v * b).sum();
+            axpy(-share, of, vector);
+        }
+    }
+    vectors
 }
 
 /// `R - K+ K R`, which is `[-K_kk^-1 K_kx; I] R_x` for any values of R at the other unknowns.

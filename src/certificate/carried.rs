@@ -151,7 +151,7 @@ impl Search<'_> {
     }
 }
 
-/// The clusters of all unknowns: those that K couples.
+/// The clusters of all unknowns: those that K couples by more than the springs that hang a pilot on a body.
 struct Clusters {
     of: Vec<usize>,
     sizes: Vec<usize>,
@@ -162,7 +162,9 @@ impl Clusters {
         let (mut pairs, mut hidden) = (Vec::new(), Vec::new());
         for (start, k, _) in bodies {
             let couple = |i: usize, j: usize, v: f64| {
-                if i != j && v != 0.0 {
+                // as far apart as a pilot and the body on which it hangs: |K_ij| < (K_ii K_jj)^1/2 / CARRIED
+                let [part, of] = [i, j].map(|of| CARRIED * v.abs() / k.metric(of, 0.0));
+                if i != j && v != 0.0 && (part * of).is_nan() | (part * of >= 1.0) {
                     pairs.push([start + i, start + j]);
                 }
             };

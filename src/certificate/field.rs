@@ -57,8 +57,7 @@ impl<'a> Field<'a> {
         let mut grounded = vec![false; n];
         for body in data.bodies.iter().filter(|body| !body.grounded.is_empty()) {
             let moving = moving(body)?;
-            let pilots = carried[body.range()].iter().all(|carried| *carried);
-            let free = |j: &&u32| pilots || moving.contains(j);
+            let free = |j: &&u32| carried[body.start + **j as usize] || moving.contains(j);
             let held = body.grounded.iter().filter(|j| !free(j));
             held.for_each(|j| grounded[body.start + *j as usize] = true);
         }

@@ -45,16 +45,17 @@ impl Prepared {
         islands.iter_mut().for_each(|island| island.refresh(model, accuracy));
         let mut rows = reserved(islands.len(), "groups of bodies")?;
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
-        let mut pilots = vec![Pilots::default(); model.bodies.len()];
+        let mut pilots = vec![None; model.bodies.len()];
         for island in &islands {
             check_compliance(island)?;
             let Metric { values, carried } = metric(model, island)?;
             for (&p, range) in island.bodies.iter().zip(&island.ranges) {
-                let first = carried.partition_point(|j| *j < range.start);
-                if carried.get(first..first + range.len()).is_some_and(|own| own.last() < Some(&range.end)) {
+                let [first, end] = [range.start, range.end].map(|end| carried.partition_point(|j| *j < end));
+                if first < end {
                     let by = ratio_of_units(model, island, p);
-                    let metric = values[range.clone()].iter().map(|d| (d * by).min(f64::MAX));
-                    pilots[p] = Some(metric.collect());
+                    let metric = values[range.clone()].iter().map(|d| (d * by).min(f64::MAX)).collect();
+                    let carried = carried[first..end].iter().map(|j| j - range.start).collect();
+                    pilots[p] = Some(Pilots { metric, carried });
                 }
             }
             let mut own = DualRows::of(island, values, coupled(&model.settings))?;
@@ -78,7 +79,7 @@ impl Prepared {
     fn tell_pilots(&self, model: &Model, log: &Log) -> Result<()> {
         let carries = |p: &usize| self.bodies[*p].pilots.is_some();
         let Some(first) = (0..self.bodies.len()).find(carries) else { return Ok(()) };
-        let all: usize = self.bodies.iter().filter_map(|own| own.pilots.as_ref()).map(|own| own.len()).sum();
+        let all: usize = self.bodies.iter().filter_map(|own| own.pilots.as_ref()).map(|own| own.carried.len()).sum();
         let number = model.name(first) as i64 + model.settings.index_base;
         log.say(LogLevel::Result, || {
             format!(

@@ -115,7 +115,7 @@ impl Prepared {
                 let k = Multiple { matrix: Arc::clone(matrix), by: 1.0 / model.bodies[p].body.unit() };
                 made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(p))?;
             }
-            Ok((made, grounded_in(matrix.as_ref(), pilots)?))
+            Ok((made, grounded_in(matrix.as_ref(), pilots.as_ref())?))
         };
         watch.every_body(&part, make, |k, (made, grounded)| {
             let (p, bytes) = (own[k].0, own[k].1.saturating_sub(made.inverse.bytes_saved()));
@@ -130,7 +130,7 @@ impl Prepared {
             let share = |of: &Inverse| Ok((of.bytes, plan.with_factor_of(&of.kplus)?));
             let of = self.bodies[q].inverse.as_ref().map(share).transpose()?;
             self.bodies[p].symbolic = symbolic;
-            let grounded = grounded_in(model.bodies[p].body.stiffness.as_ref(), &self.bodies[p].pilots)?;
+            let grounded = grounded_in(model.bodies[p].body.stiffness.as_ref(), self.bodies[p].pilots.as_ref())?;
             self.bodies[p].inverse = of.map(|(bytes, kplus)| {
                 let kplus = Arc::new(kplus);
                 Inverse { unit, kplus, grounded, bytes, operator: None }
@@ -330,12 +330,13 @@ fn same_stiffness(model: &Model, p: usize, q: usize) -> bool {
     a.zip(b).is_some_and(|(a, b)| same_matrix(a, b))
 }
 
-/// Unknowns of a matrix that are held so stiffly that neighbours are negligible; none if rows carry all.
-fn grounded_in(matrix: Option<&Arc<Symmetric>>, pilots: &Pilots) -> Result<Arc<[u32]>> {
-    match matrix.filter(|_| pilots.is_none()) {
-        Some(k) => grounded((&**k).into()).map(Arc::from),
-        None => Ok(Arc::from([])),
+/// Unknowns of a matrix that it holds so stiffly that neighbours are negligible; not those that rows carry.
+fn grounded_in(matrix: Option<&Arc<Symmetric>>, pilots: Option<&Pilots>) -> Result<Arc<[u32]>> {
+    let mut held = matrix.map_or(Ok(Vec::new()), |k| grounded((&**k).into()))?;
+    if let Some(pilots) = pilots {
+        held.retain(|j| pilots.carried.binary_search(&(*j as usize)).is_err());
     }
+    Ok(held.into())
 }
 
 /// Bodies, their plans, and the bodies whose factors they use.

@@ -23,7 +23,7 @@ pub(super) fn plans(
     let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
     let find = |k: usize| {
         let (p, body) = (pending[k], &model.bodies[pending[k]].body);
-        plan(body, &bodies[p].pilots, tolerance, model.is_piece(p))
+        plan(body, bodies[p].pilots.clone(), tolerance, model.is_piece(p))
             .map_err(|e| of_coordinates(body, e).body(p))
     };
     let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
@@ -52,13 +52,18 @@ pub(super) fn weights(model: &Model, bodies: &[usize]) -> Vec<f64> {
 }
 
 /// Null space and fixing dofs of a body, found before any factorisation.
-fn plan(body: &Body, pilots: &Pilots, tolerance: f64, is_piece: bool) -> Result<Plan> {
+fn plan(body: &Body, pilots: Option<Pilots>, tolerance: f64, is_piece: bool) -> Result<Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
     let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
     let k = Multiple { matrix, by: 1.0 / body.unit() };
-    if let Some(metric) = pilots {
-        return Plan::of_pilots(k, metric);
+    match pilots {
+        Some(pilots) if pilots.are_all() => pilots.plan(k),
+        pilots => own_plan(body, k, tolerance, is_piece)?.with_pilots(pilots),
     }
+}
+
+/// Without unknowns that rows carry.
+fn own_plan(body: &Body, k: Multiple, tolerance: f64, is_piece: bool) -> Result<Plan> {
     let fixing = body.fixing.as_deref();
     if let Some(given) = &body.null_space {
         return GeneralizedInverse::plan_with(k, given, tolerance, fixing);

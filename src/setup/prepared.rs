@@ -27,8 +27,8 @@ pub struct Prepared {
 pub struct PreparedBody {
     of: BodyRevisions,
     pub inverse: Option<Inverse>,
-    /// D~ of its unknowns if they are carried: K+ holds them.
-    pub pilots: Pilots,
+    /// Its carried unknowns: K+ holds them.
+    pub pilots: Option<Pilots>,
     /// The last analysis of a matrix with this pattern.
     pub symbolic: Option<Arc<Symbolic>>,
     /// Keys of pattern and values, if already computed.
@@ -124,7 +124,7 @@ impl Prepared {
     }
 
     /// Takes the carried unknowns of every body; drops K+ of those that hold others.
-    pub(super) fn carry(&mut self, pilots: Vec<Pilots>) {
+    pub(super) fn carry(&mut self, pilots: Vec<Option<Pilots>>) {
         for (own, pilots) in self.bodies.iter_mut().zip(pilots) {
             own.inverse.take_if(|_| own.pilots != pilots);
             own.pilots = pilots;

@@ -8,8 +8,17 @@ use crate::{assert_near, forces, solved};
 
 const E: f64 = 1e6;
 
+/// How the pilot with a stiffness of kp to the ground stands in the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Pilot {
+    /// A body of its own.
+    Alone,
+    /// Hung by springs kp on the upper nodes of the punch, in one matrix for the whole model.
+    Hung,
+}
+
 /// The forces with `n` elements along the contact.
-fn pressed(n: usize, kp: f64) -> Vec<f64> {
+fn pressed(n: usize, kp: f64, pilot: Pilot) -> Vec<f64> {
     let size = 1.0 / n as f64;
     let (below, above) = (n / 4 + 1, n / 8 + 1);
     let block = |rows: usize, y: f64, young: f64| Block {
@@ -30,11 +39,18 @@ fn pressed(n: usize, kp: f64) -> Vec<f64> {
         problem.set_stiffness(body, input).unwrap();
         problem.set_load(body, load).unwrap();
     };
-    add(&mut problem, &held.stiffness, &vec![0.0; held.dofs()]);
-    add(&mut problem, &free.stiffness, &vec![0.0; free.dofs()]);
-    let pilot: Vec<f64> = (0..9).map(|at| if at % 4 == 0 { kp } else { 0.0 }).collect();
-    add(&mut problem, &Csr::from_dense(3, &pilot), &[0.0, -100.0, 3.0]);
     let (first, led) = (held.dofs(), held.dofs() + free.dofs());
+    let own: Vec<f64> = (0..9).map(|at| if at % 4 == 0 { kp } else { 0.0 }).collect();
+    let own = Csr::from_dense(3, &own);
+    let loads = [vec![0.0; held.dofs()], vec![0.0; free.dofs()], vec![0.0, -100.0, 3.0]];
+    let parts = [&held.stiffness, &free.stiffness, &own];
+    match pilot {
+        Pilot::Alone => parts.iter().zip(&loads).for_each(|(k, load)| add(&mut problem, k, load)),
+        Pilot::Hung => {
+            let tops = (0..=n).flat_map(|x| [0, 1].map(|c| (first + 2 * punch.node([x, above, 0]) + c, led + c)));
+            add(&mut problem, &hung(parts, tops.collect(), kp), &loads.concat());
+        }
+    }
     let (mut contact, mut equalities) = (Rows::none(led + 3), Rows::none(led + 3));
     for x in 0..=n {
         let (foot, top) = (2 * base.node([x, 0, 0]), first + 2 * punch.node([x, above, 0]));
@@ -52,17 +68,33 @@ fn pressed(n: usize, kp: f64) -> Vec<f64> {
         let all: Vec<_> = all.iter().zip(&rows.rhs).map(|(row, rhs)| (&row[..], *rhs)).collect();
         crate::add_rows(&mut problem, kind, &all);
     }
-    solved(&mut problem, &format!("{n} elements, kp {kp:e}"));
+    solved(&mut problem, &format!("{n} elements, kp {kp:e}, {pilot:?}"));
     forces(&problem)[0].clone()
+}
+
+/// One matrix for these parts, with springs of stiffness kp between these unknowns.
+fn hung(parts: [&Csr; 3], springs: Vec<(usize, usize)>, kp: f64) -> Csr {
+    let (mut rows, mut start) = (Vec::new(), 0);
+    for part in parts {
+        rows.extend((0..part.rows).map(|i| part.row(i).map(|(j, v)| (start + j, v)).collect::<Vec<_>>()));
+        start += part.cols;
+    }
+    for (i, j) in springs.into_iter().flat_map(|(i, j)| [(i, j), (j, i)]) {
+        rows[i].extend([(i, kp), (j, -kp)]);
+    }
+    let mut all = Csr::empty(start);
+    rows.iter().for_each(|row| all.push_row(row));
+    all
 }
 
 #[test]
 fn the_forces_below_a_punch_do_not_depend_on_the_stiffness_of_its_pilot() {
-    for n in [10, 40] {
-        let right = pressed(n, 0.0);
+    for (n, pilot) in [(10, Pilot::Alone), (40, Pilot::Alone), (10, Pilot::Hung), (40, Pilot::Hung), (160, Pilot::Hung)] {
+        let right = pressed(n, 0.0, Pilot::Alone);
         assert!((right.iter().sum::<f64>() - 100.0).abs() < 1e-9);
-        for kp in [1e-300, 1e-20, 1e-9, 1e-6] {
-            assert_near(&pressed(n, kp), &right, 1e-9, &format!("{n} elements, kp {kp:e}"));
+        for kp in [0.0, 1e-300, 1e-20, 1e-9, 1e-6] {
+            let what = format!("{n} elements, kp {kp:e}, {pilot:?}");
+            assert_near(&pressed(n, kp, pilot), &right, 1e-9, &what);
         }
     }
 }

@@ -5,11 +5,13 @@
 //! |---|---|
 //! | [`by_hand`] | pressed, moved and tied pilots, chains, a rigid node with rotation, at every kp |
 //! | [`changes`] | rows and stiffnesses that change whether an unknown is carried |
-//! | [`elastic`] | an elastic punch on an elastic block, led by a pilot |
+//! | [`elastic`] | an elastic punch on an elastic block, led by a pilot, alone or hung on it by weak springs |
+//! | [`hung`] | pilots hung by weak springs on the body that they press, in one matrix |
 
 mod by_hand;
 mod changes;
 mod elastic;
+mod hung;
 
 use feti_contact::solver::{Outcome, Problem, Report, RowKind, RowsInput, Storage};
 
