@@ -55,7 +55,10 @@ impl Known {
 
     /// The dofs that hold the motions of this K+ best, if the present dofs hold them badly.
     pub(super) fn better(&self, made: &GeneralizedInverse) -> Result<Option<Vec<usize>>> {
-        if !self.is_free_to_choose() || self.pilots.is_some() || made.stiffness.iter().all(|stiffness| *stiffness >= 0.0) {
+        if !self.is_free_to_choose()
+            || self.pilots.is_some()
+            || made.stiffness.iter().all(|stiffness| *stiffness >= 0.0)
+        {
             return Ok(None);
         }
         let root = self.k.roots()?;

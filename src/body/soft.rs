@@ -49,14 +49,19 @@ pub fn soft_motions(
     let null = orthonormal(metric, &null)?;
     let r = without(metric, corrected(factor, k, vectors)?, &null);
     let mut r = corrected(factor, k, orthonormal(metric, &r)?)?;
+    // rounding of what rows give, which is 1 by R'D~R
+    let given = if weights.is_some() { ROUNDING } else { 0.0 };
     let found = Resistance::of(k, &r)?;
     if r.cols > 0 {
-        let (_, turn) = symmetric_eigen(&found.stiffness(&r)?)?;
+        let mut stiffness = found.stiffness(&r)?;
+        stiffness.data.iter_mut().filter(|entry| entry.abs() <= given).for_each(|entry| *entry = 0.0);
+        let (_, turn) = symmetric_eigen(&stiffness)?;
         r.turn_rows(&turn);
     }
     let found = Resistance::of(k, &r)?;
     let known = found.diagonal(&r).zip(&found.noise);
-    let lambda = known.map(|(stiffness, noise)| if stiffness.abs() > *noise { stiffness } else { 0.0 });
+    let lambda =
+        known.map(|(stiffness, noise)| if stiffness.abs() > noise.max(given) { stiffness } else { 0.0 });
     let lambda = std::iter::repeat_n(0.0, null.cols).chain(lambda).collect();
     let mut all = null;
     (0..r.cols).for_each(|j| all.push_col(r.col(j)));

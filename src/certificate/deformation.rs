@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use crate::certificate::field::Field;
-use crate::certificate::NOISE;
+use crate::certificate::{positive, NOISE};
+use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::sparse::gram::Gram;
-use crate::linalg::vector::{axpy, norm, norm_max};
+use crate::linalg::vector::{axpy, norm, norm_max, ratio};
 use crate::linalg::{Analysis, Csr, Matrix};
 use crate::platform::interrupt;
 
@@ -44,8 +45,9 @@ fn own(field: &Field) -> Result<Vec<f64>> {
     Ok(own)
 }
 
-/// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, since a single unknown may be at rest by symmetry; delta_j for
-/// grounded unknowns.
+/// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, since a single unknown may be at rest by symmetry, and for carried unknowns the
+/// same by what their rows give them, `1/2 sum_i |b_ij| sum_l |b_il| delta_l / (D~_j sum_l b_il^2 / D~_l)`; delta_j for grounded
+/// unknowns.
 fn with_neighbours(field: &Field, own: &[f64]) -> Result<Vec<f64>> {
     let mut all = own.to_vec();
     for (p, body) in field.data.bodies.iter().enumerate() {
@@ -57,7 +59,29 @@ fn with_neighbours(field: &Field, own: &[f64]) -> Result<Vec<f64>> {
             all[j] = all[j].max(NEIGHBOURS * joined);
         }
     }
+    if field.carried.contains(&true) {
+        let led = by_rows(field, own);
+        all.iter_mut().zip(led).for_each(|(delta, led)| *delta = delta.max(NEIGHBOURS * led));
+    }
     Ok(all)
+}
+
+/// Deformation that rows with a force pass on to carried unknowns, n, length.
+fn by_rows(field: &Field, own: &[f64]) -> Vec<f64> {
+    let mut led = vec![0.0; own.len()];
+    for kind in RowKind::ALL {
+        let (rows, forces) = (field.rows(kind), field.answer.forces(kind));
+        for i in (0..rows.len()).filter(|i| forces[*i] != 0.0) {
+            let sum = |of: &dyn Fn(usize, f64) -> f64| rows.matrix.row(i).map(|(j, b)| of(j, b)).sum::<f64>();
+            let yields = |j: usize, b: f64| b * b / field.metric[j];
+            let (moved, yielding) = (rows.matrix.row_dot_abs(i, own), sum(&yields));
+            for (j, b) in rows.matrix.row(i).filter(|(j, _)| field.carried[*j]) {
+                let (moved, yielding) = (moved - b.abs() * own[j], yielding - yields(j, b));
+                led[j] += ratio(b.abs() * positive(moved), field.metric[j] * positive(yielding));
+            }
+        }
+    }
+    led
 }
 
 /// `|u - R a|`, n, length. a is the least-squares fit, in D without the grounded unknowns, of the rigid motions that the

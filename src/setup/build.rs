@@ -79,7 +79,8 @@ impl Prepared {
     fn tell_pilots(&self, model: &Model, log: &Log) -> Result<()> {
         let carries = |p: &usize| self.bodies[*p].pilots.is_some();
         let Some(first) = (0..self.bodies.len()).find(carries) else { return Ok(()) };
-        let all: usize = self.bodies.iter().filter_map(|own| own.pilots.as_ref()).map(|own| own.carried.len()).sum();
+        let all: usize =
+            self.bodies.iter().filter_map(|own| own.pilots.as_ref()).map(|own| own.carried.len()).sum();
         let number = model.name(first) as i64 + model.settings.index_base;
         log.say(LogLevel::Result, || {
             format!(

@@ -130,7 +130,8 @@ impl Prepared {
             let share = |of: &Inverse| Ok((of.bytes, plan.with_factor_of(&of.kplus)?));
             let of = self.bodies[q].inverse.as_ref().map(share).transpose()?;
             self.bodies[p].symbolic = symbolic;
-            let grounded = grounded_in(model.bodies[p].body.stiffness.as_ref(), self.bodies[p].pilots.as_ref())?;
+            let grounded =
+                grounded_in(model.bodies[p].body.stiffness.as_ref(), self.bodies[p].pilots.as_ref())?;
             self.bodies[p].inverse = of.map(|(bytes, kplus)| {
                 let kplus = Arc::new(kplus);
                 Inverse { unit, kplus, grounded, bytes, operator: None }

@@ -118,7 +118,11 @@ fn a_chain_of_hung_pilots_carries_the_load_to_the_spring() {
         let k = springs(4, &[(0, None, K), (1, Some(0), kp), (2, Some(1), kp), (3, None, 2.0 * K)]);
         let mut problem = Problem::new();
         add_body(&mut problem, &k, &[0.0, 0.0, LOAD, 0.0]);
-        add_rows(&mut problem, RowKind::Equality, &[(&[(0, 1.0), (1, -1.0)], 0.0), (&[(1, 1.0), (2, -1.0)], 0.0)]);
+        add_rows(
+            &mut problem,
+            RowKind::Equality,
+            &[(&[(0, 1.0), (1, -1.0)], 0.0), (&[(1, 1.0), (2, -1.0)], 0.0)],
+        );
         add_rows(&mut problem, RowKind::Inequality, &[(&[(2, 1.0), (3, -1.0)], 1e-4)]);
         solved(&mut problem, &what);
         let d = (LOAD + 2.0 * K * 1e-4) / (3.0 * K);
