@@ -9,6 +9,7 @@ use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::known::Known;
 use crate::body::null_space::ROUNDING;
 use crate::body::plan::Plan;
+use crate::body::probe::MOST_ROUNDING;
 use crate::body::soft::{known_to_entries, soft_motions};
 use crate::error::Result;
 use crate::linalg::{Matrix, Multiple, Symmetric};
@@ -70,7 +71,9 @@ impl Pilots {
             (null, soft) = (Matrix::zeros(null.rows, 0)?, null);
         }
         (inverse.null_space, inverse.stiffness) = soft_motions(&inverse.factor, (k, metric), null, soft)?;
-        inverse.error = inverse.error.max(known_to_entries(&inverse.factor, k, &inverse.null_space)?);
+        let own = known_to_entries(&inverse.factor, k, &inverse.null_space)?;
+        inverse.error = if are_null { own.max(inverse.error) } else { own };
+        inverse.rounding = inverse.error.min(MOST_ROUNDING);
         Ok(inverse)
     }
 }

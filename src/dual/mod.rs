@@ -330,6 +330,7 @@ fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
     for s in subdomains {
         let (mut resisted, mut terms) = (0.0, 0.0);
         let mut own = Vec::new();
+        let uncertain = uncertain(s);
         for (j, mode) in s.modes.clone().enumerate() {
             let motion = s.kplus.null_space.col(j);
             let fastest = norm_max(motion);
@@ -338,7 +339,7 @@ fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
                 let size = fastest * s.matrix.row(k).map(|(_, v)| v.abs()).sum::<f64>();
                 resisted += entry * entry;
                 terms += size * size;
-                if entry.abs() > s.kplus.rounding * size {
+                if entry.abs() > s.kplus.rounding * fastest * uncertain[k] {
                     own.push((i, mode, entry));
                 }
             }
@@ -350,6 +351,17 @@ fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
     let mut coarse = Csr::empty(modes);
     rows.into_iter().for_each(|row| coarse.push_row(row));
     coarse
+}
+
+/// `|b_k|` of every row of a body, without the entries at held unknowns if its motions are soft: soft motions are those with exactly
+/// these values there.
+fn uncertain(s: &Subdomain) -> Vec<f64> {
+    let mut held = vec![false; s.range.len()];
+    if !s.kplus.stiffness.is_empty() {
+        s.kplus.fixing.iter().for_each(|&j| held[j] = true);
+    }
+    let of = |k: usize| s.matrix.row(k).filter(|(j, _)| !held[*j]).map(|(_, v)| v.abs()).sum();
+    (0..s.rows.len()).map(of).collect()
 }
 
 /// Scales each body so that `|G_p|` is in [1, 2), for every body that rows touch.
