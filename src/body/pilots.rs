@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::body::fixing::fixing_dofs;
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::known::Known;
-use crate::body::null_space::ROUNDING;
+use crate::body::null_space::{DEPENDENT, ROUNDING};
 use crate::body::plan::Plan;
 use crate::body::probe::MOST_ROUNDING;
 use crate::body::soft::{known_to_entries, soft_motions};
@@ -71,8 +71,7 @@ impl Pilots {
             (null, soft) = (Matrix::zeros(null.rows, 0)?, null);
         }
         (inverse.null_space, inverse.stiffness) = soft_motions(&inverse.factor, (k, metric), null, soft)?;
-        let own = known_to_entries(&inverse.factor, k, &inverse.null_space)?;
-        inverse.error = if are_null { own.max(inverse.error) } else { own };
+        inverse.error = known_to_entries(&inverse.factor, k, &inverse.null_space)?;
         inverse.rounding = inverse.error.min(MOST_ROUNDING);
         Ok(inverse)
     }
@@ -90,12 +89,18 @@ impl Plan {
 }
 
 impl Known {
+    /// The null vectors lose their values at these unknowns, and those that move nothing else are left out.
     fn with_pilots(mut self, pilots: Pilots) -> Result<Self> {
-        if pilots.carried.iter().any(|x| self.fixing.contains(x)) {
-            let mut root = self.k.roots()?;
-            pilots.carried.iter().for_each(|&x| root[x] = 0.0);
-            (self.fixing, self.given) = (fixing_dofs(&self.null_space, &root)?, false);
+        let mut root = self.k.roots()?;
+        pilots.carried.iter().for_each(|&x| root[x] = 0.0);
+        let Matrix { rows, cols, .. } = self.null_space;
+        let others = Matrix::from_fn(rows, cols, |i, j| root[i] * self.null_space.get(i, j))?;
+        let others = others.orthonormalised(DEPENDENT);
+        if others.cols < cols || pilots.carried.iter().any(|x| self.fixing.contains(x)) {
+            (self.fixing, self.given) = (fixing_dofs(&others, &vec![1.0; rows])?, false);
         }
+        let value = |i: usize, j: usize| if root[i] > 0.0 { others.get(i, j) / root[i] } else { 0.0 };
+        self.null_space = Matrix::from_fn(rows, others.cols, value)?;
         self.fixing.extend(&*pilots.carried);
         Ok(Self { pilots: Some(pilots), ..self })
     }

@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::random::Random;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{axpy, norm_max};
+use crate::linalg::vector::{axpy, dot, norm_max};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::filled;
 
@@ -46,8 +46,9 @@ pub fn soft_motions(
     vectors: Matrix,
 ) -> Result<(Matrix, Vec<f64>)> {
     let metric = |i: usize| weights.map_or(k.metric(i, 1.0), |weights| weights[i]);
-    let null = orthonormal(metric, &null)?;
-    let r = without(metric, corrected(factor, k, vectors)?, &null);
+    let vectors = corrected(factor, k, vectors)?;
+    let null = orthonormal(metric, &following(k, corrected(factor, k, null)?, &vectors)?)?;
+    let r = without(metric, vectors, &null);
     let mut r = corrected(factor, k, orthonormal(metric, &r)?)?;
     // rounding of what rows give, which is 1 by R'D~R
     let given = if weights.is_some() { ROUNDING } else { 0.0 };
@@ -66,6 +67,26 @@ pub fn soft_motions(
     let mut all = null;
     (0..r.cols).for_each(|j| all.push_col(r.col(j)));
     Ok((all, lambda))
+}
+
+/// `r - V (V'K V)^-1 V'K r`: null vectors r, which may be inexact, with soft motions V that K does not couple with them.
+fn following(k: &Multiple, mut null: Matrix, soft: &Matrix) -> Result<Matrix> {
+    let mut done: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+    let take = |done: &[(Vec<f64>, Vec<f64>)], r: &mut [f64]| {
+        done.iter().for_each(|(v, image)| axpy(-dot(image, r), v, r));
+    };
+    for j in (0..soft.cols).filter(|_| null.cols > 0) {
+        let mut v = soft.col(j).to_vec();
+        take(&done, &mut v);
+        let mut image = product(k, &v)?;
+        let stiffness = dot(&v, &image);
+        if stiffness > 0.0 {
+            image.iter_mut().for_each(|image| *image /= stiffness);
+            done.push((v, image));
+        }
+    }
+    (0..null.cols).for_each(|j| take(&done, null.col_mut(j)));
+    Ok(null)
 }
 
 /// The part of `vectors` orthogonal to the orthonormal `basis`.

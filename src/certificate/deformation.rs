@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::certificate::field::Field;
-use crate::certificate::{positive, NOISE};
+use crate::certificate::NOISE;
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::sparse::gram::Gram;
@@ -72,12 +72,11 @@ fn by_rows(field: &Field, own: &[f64]) -> Vec<f64> {
     for kind in RowKind::ALL {
         let (rows, forces) = (field.rows(kind), field.answer.forces(kind));
         for i in (0..rows.len()).filter(|i| forces[*i] != 0.0) {
-            let sum = |of: &dyn Fn(usize, f64) -> f64| rows.matrix.row(i).map(|(j, b)| of(j, b)).sum::<f64>();
-            let yields = |j: usize, b: f64| b * b / field.metric[j];
-            let (moved, yielding) = (rows.matrix.row_dot_abs(i, own), sum(&yields));
             for (j, b) in rows.matrix.row(i).filter(|(j, _)| field.carried[*j]) {
-                let (moved, yielding) = (moved - b.abs() * own[j], yielding - yields(j, b));
-                led[j] += ratio(b.abs() * positive(moved), field.metric[j] * positive(yielding));
+                let others = || rows.matrix.row(i).filter(|(l, _)| *l != j);
+                let moved: f64 = others().map(|(l, b)| b.abs() * own[l]).sum();
+                let yielding: f64 = others().map(|(l, b)| b * b / field.metric[l]).sum();
+                led[j] += ratio(b.abs() * moved, field.metric[j] * yielding);
             }
         }
     }

@@ -14,7 +14,7 @@ use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 
 /// Limit of active sets.
-const FACES: usize = 8;
+const FACES: usize = 16;
 /// Limit of corrections on one active set.
 const CORRECTIONS: usize = 4;
 /// Ratios of the certificate below this are rounding.
