@@ -8,7 +8,7 @@ use crate::body::carried::{self, Carried, Motions};
 use crate::body::misfit::Misfit;
 use crate::body::null_space::ROUNDING as KNOWN;
 use crate::body::pilots::Pilots;
-use crate::body::probe::{known_to, Factor};
+use crate::body::probe::{known_to, Factor, MOST_ROUNDING};
 use crate::body::rounded::Rounded;
 use crate::body::soft::{known_to_entries, soft_motions};
 use crate::body::spectrum::Doubt;
@@ -219,7 +219,7 @@ impl GeneralizedInverse {
         let judged = match pilots {
             Some(pilots) => {
                 let are_null = judged.stiffness.is_empty();
-                pilots.lead(judged, k, are_null)?
+                judged.led_by(pilots, k, are_null)?
             }
             None => judged,
         };
@@ -242,6 +242,20 @@ impl GeneralizedInverse {
             (0..vectors.cols).for_each(|j| self.null_space.push_col(vectors.col(j)));
             self.carried = Some(Arc::new(carried));
         }
+        Ok(self)
+    }
+
+    /// Adds the motions of these unknowns, which its factor holds. `are_null`: K does not resist the other motions.
+    pub(super) fn led_by(mut self, pilots: &Pilots, k: &Multiple, are_null: bool) -> Result<Self> {
+        let metric = Some(&*pilots.metric);
+        let (mut null, mut soft) = (self.null_space, pilots.motions()?);
+        if !are_null {
+            (0..soft.cols).for_each(|j| null.push_col(soft.col(j)));
+            (null, soft) = (Matrix::zeros(null.rows, 0)?, null);
+        }
+        (self.null_space, self.stiffness) = soft_motions(&self.factor, (k, metric), null, soft)?;
+        self.error = known_to_entries(&self.factor, k, &self.null_space)?;
+        self.rounding = self.error.min(MOST_ROUNDING);
         Ok(self)
     }
 

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::body::fixing::hold_as_well;
+use crate::body::fixing::{fixing_dofs, hold_as_well};
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Symbolic};
 use crate::body::misfit::Misfit;
-use crate::body::null_space::{NullSpaceInput, ROUNDING as KNOWN};
+use crate::body::null_space::{NullSpaceInput, DEPENDENT, ROUNDING as KNOWN};
 use crate::body::pilots::Pilots;
 use crate::body::probe::{probe, Factor};
 use crate::body::spectrum::Doubt;
@@ -49,6 +49,22 @@ impl Known {
         let (soft, pilots, rigid, symbolic) = (false, None, None, None);
         let (doubt, misfit, retry) = (None, None, None);
         Self { k, null_space, error, fixing, given, soft, pilots, rigid, symbolic, doubt, misfit, retry }
+    }
+
+    /// The null vectors lose their values at these unknowns, and those that move nothing else are left out.
+    pub(super) fn with_pilots(mut self, pilots: Pilots) -> Result<Self> {
+        let mut root = self.k.roots()?;
+        pilots.carried.iter().for_each(|&x| root[x] = 0.0);
+        let Matrix { rows, cols, .. } = self.null_space;
+        let others = Matrix::from_fn(rows, cols, |i, j| root[i] * self.null_space.get(i, j))?;
+        let others = others.orthonormalised(DEPENDENT);
+        if others.cols < cols || pilots.carried.iter().any(|x| self.fixing.contains(x)) {
+            (self.fixing, self.given) = (fixing_dofs(&others, &vec![1.0; rows])?, false);
+        }
+        let value = |i: usize, j: usize| if root[i] > 0.0 { others.get(i, j) / root[i] } else { 0.0 };
+        self.null_space = Matrix::from_fn(rows, others.cols, value)?;
+        self.fixing.extend(&*pilots.carried);
+        Ok(Self { pilots: Some(pilots), ..self })
     }
 
     /// Takes over dofs chosen for other values, unless they hold this body much worse than its own dofs. Returns whether

@@ -71,6 +71,21 @@ impl GeneralizedInverse {
 }
 
 impl Plan {
+    /// The plan if rows carry all unknowns: the null space of K need not be known.
+    pub fn of_pilots(k: Multiple, pilots: Pilots) -> Result<Self> {
+        let none = Matrix::zeros(k.order(), 0)?;
+        Self::Known(Known::of(k, none, KNOWN, Vec::new(), false)).with_pilots(Some(pilots))
+    }
+
+    /// Holds these unknowns as well.
+    pub fn with_pilots(self, pilots: Option<Pilots>) -> Result<Self> {
+        let Some(pilots) = pilots else { return Ok(self) };
+        Ok(match self {
+            Self::Known(known) => Self::Known(known.with_pilots(pilots)?),
+            Self::Search(search) => Self::Search(search.with_pilots(pilots)?),
+        })
+    }
+
     /// Searches the null space in K if K turns out to have more null vectors than planned, as in a piece with a hinge.
     pub fn or_search(self, tolerance: f64) -> Self {
         match self {

@@ -278,7 +278,7 @@ impl Search {
             near: None,
         };
         let Some((pilots, k)) = &self.pilots else { return Ok(inverse) };
-        let mut led = pilots.lead(inverse, k, false)?;
+        let mut led = inverse.led_by(pilots, k, false)?;
         led.stiffness.iter_mut().for_each(|stiffness| *stiffness = stiffness.max(0.0));
         Ok(led)
     }

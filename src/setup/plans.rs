@@ -57,7 +57,7 @@ fn plan(body: &Body, pilots: Option<Pilots>, tolerance: f64, is_piece: bool) -> 
     let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
     let k = Multiple { matrix, by: 1.0 / body.unit() };
     match pilots {
-        Some(pilots) if pilots.are_all() => pilots.plan(k),
+        Some(pilots) if pilots.are_all() => Plan::of_pilots(k, pilots),
         pilots => own_plan(body, k, tolerance, is_piece)?.with_pilots(pilots),
     }
 }
