@@ -90,7 +90,18 @@ pub fn all_grounded(deck: &Deck) -> Vec<bool> {
 
 impl<'a> Yardstick<'a> {
     pub fn new(deck: &'a Deck, answer: &'a Answer, undetermined: bool) -> Yardstick<'a> {
-        let diagonal: Vec<f64> = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal()).collect();
+        Self::with_pilots(deck, answer, undetermined, &[])
+    }
+
+    /// As `new`, with another D at some unknowns: what rows give them in place of K.
+    pub fn with_pilots(
+        deck: &'a Deck,
+        answer: &'a Answer,
+        undetermined: bool,
+        pilots: &[(usize, f64)],
+    ) -> Yardstick<'a> {
+        let mut diagonal: Vec<f64> = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal()).collect();
+        pilots.iter().for_each(|&(dof, given)| diagonal[dof] = given);
         let grounded = all_grounded(deck);
         let reaction = reaction(deck, answer);
         let (sizes, single, following) = (Vec::new(), Vec::new(), Vec::new());
@@ -317,7 +328,8 @@ pub fn reaction(deck: &Deck, answer: &Answer) -> Vec<f64> {
     reaction
 }
 
-fn body_of(deck: &Deck, dof: usize) -> usize {
+/// The body of an unknown.
+pub fn body_of(deck: &Deck, dof: usize) -> usize {
     (0..deck.bodies.len()).find(|&p| dof < deck.offset(p + 1)).expect("a body")
 }
 

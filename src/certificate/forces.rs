@@ -14,9 +14,6 @@ use crate::platform::memory::filled;
 /// Limit of the residual that rounding may excuse in the equilibrium of one body, relative to the forces of the island:
 /// if a body has moved so far that its strain is lost, the answer is not known.
 const EXCUSED: f64 = 1e-2;
-/// Forces of a body without load are zero below this part of the forces of the island: answers of other solvers carry
-/// 1e-13.
-const IDLE: f64 = 1e-10;
 
 /// Measures of the forces.
 pub(super) struct Forces {
@@ -64,7 +61,8 @@ impl Forces {
         Self { sizes, unloaded, everywhere: forces + moved, strains, strain, leverage, acting: forces > 0.0 }
     }
 
-    /// `part` of the forces of the island, force, if body p has neither a load nor larger forces; otherwise 0.
+    /// `part` of the forces of the island, force, if body p has neither a load nor larger forces; otherwise 0. Without a load forces
+    /// below the accuracy of the data are zero: answers of other solvers carry 1e-13.
     fn idle(&self, p: usize, size: f64, part: f64) -> f64 {
         let most = part * self.everywhere;
         if self.unloaded[p] && size <= most {
@@ -93,7 +91,7 @@ impl Forces {
         let rows = field.rows(kind);
         let allowed = |p: usize| {
             let size = self.sizes[p].unwrap_or(0.0) + at_grounded(field, rows, i, p);
-            (field.data.limit * size).max(self.idle(p, size, IDLE))
+            (field.data.limit * size).max(self.idle(p, size, field.data.accuracy))
         };
         match field.touched(rows, i).map(allowed).reduce(smaller) {
             Some(least) => field.scales[kind as usize][i] * least,
@@ -203,7 +201,10 @@ fn equilibrium(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f6
         positive(residual.abs() - noise)
     });
     let strain = field.size(p, &field.free(p, |j| products.0[j - start]));
-    share(field.size(p, &left), field.data.limit * (size + strain) + forces.idle(p, size, IDLE))
+    share(
+        field.size(p, &left),
+        field.data.limit * (size + strain) + forces.idle(p, size, field.data.accuracy),
+    )
 }
 
 /// The residual excused by rounding in `equilibrium`, relative to the largest that may be excused; no unit.
@@ -247,7 +248,7 @@ fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     let (motions, unit) = &field.motions[p];
     let Some(size) = forces.sizes[p].filter(|_| motions.cols > 0) else { return Ok(0.0) };
     let terms = field.size(p, &field.free(p, |j| field.load(p, j).abs() + field.push_terms[j]));
-    let allowed = field.data.limit * size + NOISE * terms + forces.idle(p, size, IDLE);
+    let allowed = field.data.limit * size + NOISE * terms + forces.idle(p, size, field.data.accuracy);
     let rest = field.free(p, |j| field.load(p, j) - field.push[j]);
     let mut resultants = motions.mul_transposed(&rest);
     let weight = field.unit / unit;

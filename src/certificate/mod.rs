@@ -52,6 +52,8 @@ pub struct Data<'a> {
     pub nodes: &'a [FrictionNode],
     /// tol, no unit: limit of every entry.
     pub limit: f64,
+    /// `data_accuracy`, no unit.
+    pub accuracy: f64,
 }
 
 impl<'a> Data<'a> {

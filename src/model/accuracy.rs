@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use crate::body::Body;
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::vector::NOISE;
@@ -19,6 +20,8 @@ const MARGINAL: f64 = 1e3;
 const DIGITS: Range<i32> = 5..13;
 /// Largest accuracy that digits of coordinates may show.
 const MOST: f64 = 1e-6;
+/// Longest chain of pilots between a load and what holds it.
+const CHAIN: usize = 8;
 /// Number of points whose digits are counted.
 const SAMPLE: usize = 256;
 
@@ -34,13 +37,13 @@ pub struct Accuracy {
 
 impl Model {
     /// The length of a problem is the largest of its distances between coordinates, motions `sum_j |f_j| / K_jj` of bodies
-    /// by loads, and lengths `|h| / max |b|` and `-c / max |b|` demanded by rows; without loads and coordinates also the
+    /// by loads, K_jj or what rows give, and lengths `|h| / max |b|` and `-c / max |b|` demanded by rows; without loads and coordinates also the
     /// smallest gap. Other gaps may be far: they say nothing.
     pub fn accuracy(&self) -> Accuracy {
-        let mut length = 0.0f64;
-        for body in self.bodies.iter().map(|given| &given.body) {
-            if let (Some(load), Some(k)) = (&body.load, body.k()) {
-                let moved = load.iter().enumerate().map(|(j, f)| f.abs() / k.metric(j, f64::INFINITY));
+        let (mut length, held) = (0.0f64, self.held());
+        for (body, start) in self.bodies.iter().map(|given| &given.body).zip(&self.offsets) {
+            if let (Some(load), Some(_)) = (&body.load, body.k()) {
+                let moved = load.iter().zip(&held[*start..]).map(|(f, held)| f.abs() / held);
                 length = length.max(moved.sum());
             }
             length = body.coordinates.as_ref().map_or(length, |given| length.max(given.length()));
@@ -59,6 +62,38 @@ impl Model {
             .chain(gaps().map(|gap| -gap))
             .fold(length, f64::max);
         Accuracy { length: NOISE * length, data: self.settings.data_accuracy }
+    }
+
+    /// What holds every unknown, force / length: K_jj, or the best of its rows as far as the other unknowns of this row are held,
+    /// `max_i b_ij^2 / (sum_l b_il^2 / d_l + C_i)`; pilots hang on each other in chains. Infinite without stiffness.
+    fn held(&self) -> Vec<f64> {
+        let of = |body: &Body| match body.k() {
+            Some(k) => (0..k.order()).map(|j| k.metric(j, f64::INFINITY)).collect(),
+            None => vec![f64::INFINITY; body.order],
+        };
+        let mut held: Vec<f64> = self.bodies.iter().flat_map(|given| of(&given.body)).collect();
+        for _ in 0..CHAIN {
+            let mut changed = false;
+            for rows in [&self.contact, &self.equalities] {
+                for i in (0..rows.len()).filter(|&i| rows.is_finite(i)) {
+                    // only the entry that yields most gains by the others
+                    let yields = |(j, b): (usize, f64)| b * b / held[j];
+                    let Some((j, b)) = rows.matrix.row(i).max_by(|x, y| yields(*x).total_cmp(&yields(*y)))
+                    else {
+                        continue;
+                    };
+                    let others = rows.matrix.row(i).filter(|(l, _)| *l != j).map(yields).sum::<f64>();
+                    let given = b * b / (others + rows.compliance[i]);
+                    if others > 0.0 && given > 2.0 * held[j] {
+                        (held[j], changed) = (given, true);
+                    }
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+        held
     }
 
     /// The accuracy of rows that the host makes from coordinates: `data_accuracy`, raised to what the digits of the

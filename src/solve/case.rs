@@ -46,8 +46,8 @@ impl<'a> Case<'a> {
                 grounded: &inverse.grounded,
             });
         }
-        let limit = model.settings.certificate_tolerance;
+        let (limit, accuracy) = (model.settings.certificate_tolerance, model.settings.data_accuracy);
         let [contact, equalities, tangential] = RowKind::ALL.map(|kind| &island.members(kind).rows);
-        Ok(Data { bodies, contact, equalities, tangential, nodes: &island.friction.nodes, limit })
+        Ok(Data { bodies, contact, equalities, tangential, nodes: &island.friction.nodes, limit, accuracy })
     }
 }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::sync::Mutex;
 
-use decks::varied::{self, Varied};
+use decks::varied::{self, Varied, HOST_MIXTURE};
 use decks::yardstick::{Answer, Yardstick};
 use feti_contact::solver::Problem;
 
@@ -72,7 +72,10 @@ fn of_all_cases(judge: impl Fn(&mut Tally, u64, &Varied, &mut Problem) + Sync) -
             scope.spawn(move || {
                 let mut own = Tally::default();
                 for seed in (first..first + count).filter(|seed| seed % 2 == part) {
-                    let case = varied::case(seed);
+                    let case = match seed % 4 {
+                        0 | 1 => varied::case(seed),
+                        _ => varied::mixed(seed, &HOST_MIXTURE),
+                    };
                     if case.condition > CONDITION {
                         own.beyond += 1;
                         continue;
@@ -142,7 +145,7 @@ fn every_right_answer_is_accepted() {
 fn every_lie_is_refused() {
     let tally = of_all_cases(|tally, seed, case, problem| {
         let truth = right(case);
-        let yardstick = Yardstick::new(&case.deck, &truth, case.undetermined > 0);
+        let yardstick = Yardstick::with_pilots(&case.deck, &truth, case.undetermined > 0, &case.pilots);
         for Lie { name, body, answer } in lies::all(seed, case, &yardstick) {
             let (error, where_) = yardstick.worst(&answer);
             let counts = tally.lies.entry(name.to_string()).or_default();

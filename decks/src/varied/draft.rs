@@ -3,9 +3,9 @@
 use crate::dd::{self, Dd};
 use crate::random::Random;
 use crate::varied::bodies::{self, inner, orthonormal, remove, Spread};
-use crate::varied::{condition, rounded, rows, Class, Mixture, Varied, CLASSES};
+use crate::varied::{condition, rounded, rounded_to, rows, Class, Mixture, Varied, CLASSES};
 use crate::vector::axpy;
-use crate::yardstick::all_grounded;
+use crate::yardstick::{all_grounded, body_of};
 use crate::{Deck, Rows};
 
 pub(crate) struct Draft {
@@ -71,7 +71,8 @@ impl Draft {
                 let decades = if has(Class::Moduli) { random.between(1.0, 9.0) } else { 0.0 };
                 let spread = Spread { stiffness: stiffness * random.decades(-contrast, contrast), decades };
                 let held = random.chance(0.35);
-                let mut body = if has(Class::Springs) && random.chance(0.3) {
+                let is_single = has(Class::Springs) && random.chance(0.3);
+                let mut body = if is_single || has(Class::Pilots) && random.chance(0.4) {
                     bodies::single(spread, &mut random)
                 } else if room < 4 {
                     continue;
@@ -110,6 +111,12 @@ impl Draft {
     }
 
     fn round_rows(&mut self) {
+        if self.is(Class::Printed) {
+            let digits = 8 + self.random.below(7);
+            for rows in [&mut self.deck.contact, &mut self.deck.equalities] {
+                rows.matrix.val.iter_mut().for_each(|v| *v = rounded_to(*v, digits));
+            }
+        }
         if self.is(Class::Rounded) {
             for rows in [&mut self.deck.contact, &mut self.deck.equalities] {
                 let values = rows.matrix.val.iter_mut().chain(&mut rows.compliance);
@@ -191,6 +198,9 @@ impl Draft {
 
     pub fn finish(mut self, seed: u64) -> Varied {
         let rounding = self.is(Class::Rounded);
+        let face = condition::Face::new(&self);
+        let (undetermined, condition) = (face.undetermined, face.condition());
+        let pilots = if self.is(Class::Pilots) { self.soften() } else { Vec::new() };
         self.set_gaps();
         self.set_loads();
         if rounding {
@@ -199,8 +209,6 @@ impl Draft {
             let gaps = deck.contact.rhs.iter_mut().chain(&mut deck.equalities.rhs);
             loads.chain(gaps).for_each(|value| *value = rounded(*value));
         }
-        let face = condition::Face::new(&self);
-        let (undetermined, condition) = (face.undetermined, face.condition());
         self.spoil_null_spaces();
         let mut case = Varied {
             deck: self.deck,
@@ -210,10 +218,51 @@ impl Draft {
             equality_forces: self.mu,
             undetermined,
             penalties: self.penalties,
+            pilots,
             condition,
         };
         case.deck.name = format!("varied_{seed}_{}", case.kind());
         case
+    }
+
+    /// Bodies of one unknown that closed or equality rows join to larger ones become pilots.
+    fn soften(&mut self) -> Vec<(usize, f64)> {
+        let mut pilots = Vec::new();
+        let singles: Vec<usize> =
+            (0..self.deck.bodies.len()).filter(|&p| self.deck.bodies[p].dofs() == 1).collect();
+        for p in singles {
+            let dof = self.deck.offset(p);
+            let elastic = |j: usize| self.deck.bodies[body_of(&self.deck, j)].dofs() > 1;
+            let joins = |rows: &Rows, i: usize| {
+                let others = || rows.matrix.row(i).map(|(j, _)| j).filter(|j| *j != dof);
+                rows.matrix.row(i).any(|(j, _)| j == dof) && others().count() > 0 && others().all(elastic)
+            };
+            let (contact, equalities) = (&self.deck.contact, &self.deck.equalities);
+            let held = (0..contact.len()).any(|i| self.lambda[i] > 0.0 && joins(contact, i));
+            if held || (0..equalities.len()).any(|i| joins(equalities, i)) {
+                let given = self.given(dof);
+                pilots.push((dof, given));
+                let kp = self.diagonal[dof] * self.random.decades(-20.0, 0.0);
+                self.deck.bodies[p].stiffness.val[0] = kp;
+            }
+        }
+        pilots
+    }
+
+    /// `sum_i b_ij^2 / (sum_l b_il^2 / D_l + C_i)`, l other than j: what its rows to larger bodies give a pilot.
+    fn given(&self, dof: usize) -> f64 {
+        let mut given = 0.0;
+        for rows in [&self.deck.contact, &self.deck.equalities] {
+            for i in (0..rows.len()).filter(|&i| rows.matrix.row(i).any(|(j, _)| j == dof)) {
+                let yields = |(j, b): (usize, f64)| b * b / self.diagonal[j];
+                let own: f64 = rows.matrix.row(i).filter(|(j, _)| *j == dof).map(|(_, b)| b * b).sum();
+                let others = || rows.matrix.row(i).filter(|(j, _)| *j != dof);
+                let elastic = others().all(|(j, _)| self.deck.bodies[body_of(&self.deck, j)].dofs() > 1);
+                let others: f64 = others().map(yields).sum();
+                given += if elastic && others > 0.0 { own / (others + rows.compliance[i]) } else { 0.0 };
+            }
+        }
+        given
     }
 
     /// c_i = b_i u - C_i lambda_i + slack, h_i = h_i u - C_i mu_i.

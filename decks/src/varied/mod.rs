@@ -51,6 +51,10 @@ pub enum Class {
     Noisy,
     /// K, B, H, f, c, h have 15 decimal digits.
     Rounded,
+    /// B and H have 8 to 14 decimal digits. Only as an extra.
+    Printed,
+    /// Some bodies of one unknown have 1e-20 to 1 of the stiffness that they were drawn with. Only as an extra.
+    Pilots,
 }
 
 pub const CLASSES: [Class; 13] = [
@@ -87,6 +91,8 @@ pub struct Varied {
     pub undetermined: usize,
     /// Unknowns with a penalty.
     pub penalties: Vec<usize>,
+    /// Pilots: unknown, and the stiffness that its rows give it.
+    pub pilots: Vec<(usize, f64)>,
     /// Largest over smallest singular value of [K B_F' H'; B_F -C; H -C] on the rows F with a force, scaled by D = diag K and
     /// s_i = (b_i D^-1 b_i' + C_i)^-1/2, without the zeros of undetermined motions and redundant rows. Infinite where these
     /// cannot be told from the others.
@@ -133,6 +139,22 @@ pub const SECOND_MIXTURE: Mixture = Mixture {
         Class::Rounded,
     ],
     chance: 0.3,
+};
+
+/// What hosts hand over: pilots and printed rows among the others.
+pub const HOST_MIXTURE: Mixture = Mixture {
+    unknowns: 90,
+    extras: &[
+        Class::Printed,
+        Class::Pilots,
+        Class::Travel,
+        Class::Far,
+        Class::Glue,
+        Class::Springs,
+        Class::Mixed,
+        Class::Rounded,
+    ],
+    chance: 0.25,
 };
 
 /// The condition of any problem on the rows with a force, as [`Varied::condition`] has it.

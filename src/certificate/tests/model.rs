@@ -255,6 +255,7 @@ impl DenseModel {
             tangential: &tangential,
             nodes: &nodes,
             limit: LIMIT,
+            accuracy: 1e-10,
         };
         let none = vec![0.0; tangential.len()];
         let tangential = if point.tangential.is_empty() { &none } else { &point.tangential };

@@ -157,14 +157,14 @@ impl Whole {
                 grounded: &own.grounded,
             });
         }
-        let limit = model.settings.certificate_tolerance;
         Ok(Data {
             bodies,
             contact: &self.island.contact.rows,
             equalities: &self.island.equalities.rows,
             tangential: &self.island.friction.tangential.rows,
             nodes: &self.island.friction.nodes,
-            limit,
+            limit: model.settings.certificate_tolerance,
+            accuracy: model.settings.data_accuracy,
         })
     }
 
