@@ -165,3 +165,41 @@ fn every_lie_is_refused() {
     });
     assert!(tally.failures.is_empty(), "{}", tally.table());
 }
+
+#[test]
+fn zz() {
+    let seed = number("ZZ", 963);
+    let case = if seed % 4 < 2 { varied::case(seed) } else { varied::mixed(seed, &HOST_MIXTURE) };
+    let twin = (seed % 3 == 0).then(|| case.deck.one_k());
+    let mut problem = hand_over::problem(twin.as_ref().unwrap_or(&case.deck)).unwrap();
+    let truth = right(&case);
+    let c = problem.check(&truth.u, &truth.lambda, &truth.mu).unwrap();
+    println!("{c:?}");
+    println!(
+        "bodies {:?} pilots {:?}",
+        case.deck.bodies.iter().map(|b| b.load.len()).collect::<Vec<_>>(),
+        case.pilots
+    );
+    for b in &case.deck.bodies {
+        println!("body load {:?}", b.load);
+        if b.load.len() < 25 {
+            for i in 0..b.load.len() {
+                println!(
+                    "   {i}: {:?}",
+                    b.stiffness.row(i).map(|(j, v)| format!("{j}:{v:.2e}")).collect::<Vec<_>>().join(" ")
+                );
+            }
+        }
+    }
+    for (rows, forces) in [(&case.deck.contact, &truth.lambda), (&case.deck.equalities, &truth.mu)] {
+        for i in 0..rows.len() {
+            println!(
+                "row {i} {:?} rhs {:e} C {:e} force {:e}",
+                rows.matrix.row(i).map(|(j, v)| format!("{j}:{v:.3}")).collect::<Vec<_>>().join(" "),
+                rows.rhs[i],
+                rows.compliance[i],
+                forces[i]
+            );
+        }
+    }
+}
