@@ -46,8 +46,14 @@ enum State {
 }
 
 impl Metric {
-    /// For the rows of the island; a row with an infinite gap holds nothing.
-    pub fn of(bodies: &[Metered], rows: [&RowSet; 3], unit: f64) -> Result<Self> {
+    /// For the rows of the island that may hold something, as far as known by the kind of a row and its number; a row with an
+    /// infinite gap holds nothing.
+    pub fn of(
+        bodies: &[Metered],
+        rows: [&RowSet; 3],
+        holds: &dyn Fn(usize, usize) -> bool,
+        unit: f64,
+    ) -> Result<Self> {
         let n = bodies.last().map_or(0, |(start, k, _)| start + k.order());
         let (mut values, mut stiffness) = (zeros(n, WHAT)?, zeros(n, WHAT)?);
         for (start, k, without) in bodies {
@@ -56,7 +62,7 @@ impl Metric {
                 stiffness[start + i] = k.metric(i, 0.0) / unit;
             }
         }
-        let mut search = Search { rows, unit, stiffness, state: filled(n, State::Open, WHAT)? };
+        let mut search = Search { rows, holds, unit, stiffness, state: filled(n, State::Open, WHAT)? };
         if !search.found(|j| j).is_empty() {
             let clusters = Clusters::of(bodies, n)?;
             loop {
@@ -77,6 +83,7 @@ impl Metric {
 
 struct Search<'a> {
     rows: [&'a RowSet; 3],
+    holds: &'a dyn Fn(usize, usize) -> bool,
     unit: f64,
     /// D~ / unit as far as it is known, n; 0 without stiffness.
     stiffness: Vec<f64>,
@@ -87,8 +94,8 @@ impl Search<'_> {
     /// Unknown and `b_ij^2 / D~_j` of the entries of every row, and `C_i`, without unit.
     fn each_row(&self, mut visit: impl FnMut(&[(usize, f64, f64)], f64)) {
         let mut row = Vec::new();
-        for set in self.rows {
-            for i in (0..set.len()).filter(|&i| set.is_finite(i)) {
+        for (kind, set) in self.rows.into_iter().enumerate() {
+            for i in (0..set.len()).filter(|&i| set.is_finite(i) && (self.holds)(kind, i)) {
                 row.clear();
                 row.extend(set.matrix.row(i).map(|(j, b)| (j, b * b, b * b / self.stiffness[j])));
                 visit(&row, self.unit * set.compliance[i]);
@@ -216,7 +223,7 @@ mod tests {
             springs.iter().map(|&k| Symmetric::new(vec![0, 1], vec![0], vec![k])).collect();
         let bodies: Vec<Metered> = matrices.iter().enumerate().map(|(p, k)| (p, k.into(), 1.0)).collect();
         let (rows, none) = (rows(springs.len(), of_rows), RowSet::default());
-        Metric::of(&bodies, [&rows, &none, &none], 1.0).unwrap()
+        Metric::of(&bodies, [&rows, &none, &none], &|_, _| true, 1.0).unwrap()
     }
 
     #[test]
@@ -267,7 +274,7 @@ mod tests {
             let bodies: Vec<Metered> = vec![(0, (&stiff).into(), 1.0), (1, (&soft).into(), 1.0)];
             let entries: Vec<_> = (1..=held).map(|j| [(0, 1.0), (j, -1.0)]).collect();
             let rows = rows(n + 1, &entries.iter().map(|row| &row[..]).collect::<Vec<_>>());
-            let of = Metric::of(&bodies, [&none, &rows, &none], 1.0).unwrap();
+            let of = Metric::of(&bodies, [&none, &rows, &none], &|_, _| true, 1.0).unwrap();
             assert_eq!(of.carried, if carried { (1..=n).collect() } else { vec![] });
         }
     }

@@ -42,8 +42,10 @@ impl<'a> Field<'a> {
             (0..k.order()).map(|i| k.metric(i, *unit)).fold(0.0, f64::max)
         };
         let unit = power_of_two_below(metered.iter().map(stiffest).fold(0.0, f64::max));
+        let forces = RowKind::ALL.map(|kind| answer.forces(kind));
+        let holds = |kind: usize, i: usize| kind == RowKind::Equality as usize || forces[kind][i] != 0.0;
         let Metric { values: metric, carried: places } =
-            Metric::of(&metered, RowKind::ALL.map(|kind| data.rows(kind)), unit)?;
+            Metric::of(&metered, RowKind::ALL.map(|kind| data.rows(kind)), &holds, unit)?;
         let mut carried = vec![false; n];
         places.into_iter().for_each(|j| carried[j] = true);
         let motions = data.bodies.iter().map(|body| motions(body, unit, &metric, &carried));

@@ -172,7 +172,7 @@ fn metric(model: &Model, island: &Island) -> Result<Metric> {
         Some((range.start, body.k()?, body.without(island.unit)))
     };
     let bodies: Vec<_> = island.bodies.iter().zip(&island.ranges).filter_map(of_body).collect();
-    Metric::of(&bodies, RowKind::ALL.map(|kind| &island.members(kind).rows), island.unit)
+    Metric::of(&bodies, RowKind::ALL.map(|kind| &island.members(kind).rows), &|_, _| true, island.unit)
 }
 
 /// Fraction of the setup completed after the dual operators: the rest is for the preconditioner.

@@ -249,11 +249,12 @@ impl Draft {
         pilots
     }
 
-    /// `sum_i b_ij^2 / (sum_l b_il^2 / D_l + C_i)`, l other than j: what its rows to larger bodies give a pilot.
+    /// `sum_i b_ij^2 / (sum_l b_il^2 / D_l + C_i)`, l other than j: what closed and equality rows to larger bodies give a pilot.
     fn given(&self, dof: usize) -> f64 {
         let mut given = 0.0;
-        for rows in [&self.deck.contact, &self.deck.equalities] {
-            for i in (0..rows.len()).filter(|&i| rows.matrix.row(i).any(|(j, _)| j == dof)) {
+        for (rows, forces) in [(&self.deck.contact, Some(&self.lambda)), (&self.deck.equalities, None)] {
+            let holds = |i: &usize| forces.is_none_or(|forces| forces[*i] > 0.0);
+            for i in (0..rows.len()).filter(holds) {
                 let yields = |(j, b): (usize, f64)| b * b / self.diagonal[j];
                 let own: f64 = rows.matrix.row(i).filter(|(j, _)| *j == dof).map(|(_, b)| b * b).sum();
                 let others = || rows.matrix.row(i).filter(|(j, _)| *j != dof);
