@@ -131,6 +131,7 @@ impl Search<'_> {
     fn carry(&mut self, mut found: Vec<usize>, clusters: &Clusters) -> Result<()> {
         loop {
             let mut given = zeros(self.state.len(), WHAT)?;
+            let mut links = Vec::new();
             self.each_row(|row, compliance| {
                 // clusters are found as a whole: what is not found belongs to others
                 let is_found = |entry: &&(usize, f64, f64)| self.state[entry.0] == State::Found;
@@ -139,9 +140,19 @@ impl Search<'_> {
                     others.fold((0, compliance), |(count, sum), entry| (count + 1, sum + entry.2));
                 if count > 0 {
                     row.iter().filter(is_found).for_each(|(j, square, _)| given[*j] += square / yielding);
+                    let places = row.iter().filter_map(|entry| found.binary_search(&entry.0).ok());
+                    links.push(places.collect::<Vec<usize>>());
                 }
             });
-            let holds = |j: &usize| given[*j] > CARRIED * self.stiffness[*j] && given[*j].is_normal();
+            // fewer rows than unknowns leave some of their motions to K
+            links.retain(|places| !places.is_empty());
+            let (group, count) = joined(found.len(), links.iter().map(|places| places.iter().copied()));
+            let mut spare = filled(count, 0i64, WHAT)?;
+            links.iter().for_each(|places| spare[group[places[0]]] += 1);
+            group.iter().for_each(|&group| spare[group] -= 1);
+            let enough = |j: &usize| found.binary_search(j).is_ok_and(|at| spare[group[at]] >= 0);
+            let holds =
+                |j: &usize| given[*j] > CARRIED * self.stiffness[*j] && given[*j].is_normal() && enough(j);
             let mut held: Vec<usize> = found.iter().copied().filter(holds).collect();
             clusters.keep_whole(&mut held, |_| ());
             if held.len() == found.len() {
