@@ -239,7 +239,7 @@ impl GeneralizedInverse {
         {
             self.stiffness = vec![0.0; self.null_space.cols];
             self.stiffness.extend(stiffness);
-            (0..vectors.cols).for_each(|j| self.null_space.push_col(vectors.col(j)));
+            self.null_space.push_cols(&vectors);
             self.carried = Some(Arc::new(carried));
         }
         Ok(self)
@@ -250,7 +250,7 @@ impl GeneralizedInverse {
         let metric = Some(&*pilots.metric);
         let (mut null, mut soft) = (self.null_space, pilots.motions()?);
         if !are_null {
-            (0..soft.cols).for_each(|j| null.push_col(soft.col(j)));
+            null.push_cols(&soft);
             (null, soft) = (Matrix::zeros(null.rows, 0)?, null);
         }
         (self.null_space, self.stiffness) = soft_motions(&self.factor, (k, metric), null, soft)?;

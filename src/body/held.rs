@@ -39,11 +39,6 @@ impl Known {
         }
     }
 
-    /// Number of motions with those of carried unknowns.
-    pub(super) fn motions(&self) -> usize {
-        self.null_space.cols + self.pilots.as_ref().map_or(0, |pilots| pilots.carried.len())
-    }
-
     /// Largest number of motions that this body may have.
     pub(super) fn most_motions(&self) -> usize {
         self.null_space.cols + if self.is_free_to_choose() { FURTHER } else { 0 }

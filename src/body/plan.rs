@@ -167,7 +167,7 @@ impl Plan {
     /// unless the null space of `other` was found in K or includes further motions.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
         match self {
-            Self::Known(known) if other.gap.is_none() && other.own_motions() == known.motions() => {
+            Self::Known(known) if other.gap.is_none() && other.own_motions() == known.fixing.len() => {
                 let misfit = known.held();
                 let Known { k, null_space, error, doubt, soft, pilots, rigid, .. } = known;
                 let (rounding, stiffness) = (KNOWN, Vec::new());

@@ -65,7 +65,7 @@ pub fn soft_motions(
         known.map(|(stiffness, noise)| if stiffness.abs() > noise.max(given) { stiffness } else { 0.0 });
     let lambda = std::iter::repeat_n(0.0, null.cols).chain(lambda).collect();
     let mut all = null;
-    (0..r.cols).for_each(|j| all.push_col(r.col(j)));
+    all.push_cols(&r);
     Ok((all, lambda))
 }
 

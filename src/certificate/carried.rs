@@ -141,19 +141,18 @@ impl Search<'_> {
                 if count > 0 {
                     row.iter().filter(is_found).for_each(|(j, square, _)| given[*j] += square / yielding);
                     let places = row.iter().filter_map(|entry| found.binary_search(&entry.0).ok());
-                    links.push(places.collect::<Vec<usize>>());
+                    let places: Vec<usize> = places.collect();
+                    links.extend((!places.is_empty()).then_some(places));
                 }
             });
             // fewer rows than unknowns leave some of their motions to K
-            links.retain(|places| !places.is_empty());
             let (group, count) = joined(found.len(), links.iter().map(|places| places.iter().copied()));
             let mut spare = filled(count, 0i64, WHAT)?;
             links.iter().for_each(|places| spare[group[places[0]]] += 1);
             group.iter().for_each(|&group| spare[group] -= 1);
-            let enough = |j: &usize| found.binary_search(j).is_ok_and(|at| spare[group[at]] >= 0);
-            let holds =
-                |j: &usize| given[*j] > CARRIED * self.stiffness[*j] && given[*j].is_normal() && enough(j);
-            let mut held: Vec<usize> = found.iter().copied().filter(holds).collect();
+            let holds = |j: usize| given[j] > CARRIED * self.stiffness[j] && given[j].is_normal();
+            let enough = found.iter().zip(&group).filter(|(_, group)| spare[**group] >= 0);
+            let mut held: Vec<usize> = enough.map(|(j, _)| *j).filter(|j| holds(*j)).collect();
             clusters.keep_whole(&mut held, |_| ());
             if held.len() == found.len() {
                 for j in held {

@@ -249,29 +249,37 @@ fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     let Some(size) = forces.sizes[p].filter(|_| motions.cols > 0) else { return Ok(0.0) };
     let terms = field.size(p, &field.free(p, |j| field.load(p, j).abs() + field.push_terms[j]));
     let allowed = field.data.limit * size + NOISE * terms + forces.idle(p, size, field.data.accuracy);
-    let mut rest = field.free(p, |j| field.load(p, j) - field.push[j]);
-    let mut u = field.free(p, |j| field.answer.u[j]);
-    let mut of_grounded = 0.0;
-    if body.soft {
-        // they bend the body, and move grounded unknowns a little
-        let start = field.range(p).start;
-        for i in (0..rest.len()).filter(|i| field.grounded[start + i]) {
-            (rest[i], u[i]) = (field.load(p, start + i) - field.push[start + i], field.answer.u[start + i]);
-            let fastest = (0..motions.cols).fold(0.0, |fastest: f64, k| fastest.max(motions.get(i, k).abs()));
-            of_grounded += fastest * (field.load(p, start + i).abs() + field.push_terms[start + i]);
+    // soft motions bend the body, and move grounded unknowns a little
+    let felt = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        if body.soft {
+            field.range(p).map(value).collect()
+        } else {
+            field.free(p, value)
         }
-    }
-    let mut resultants = motions.mul_transposed(&rest);
+    };
+    let mut resultants = motions.mul_transposed(&felt(&|j| field.load(p, j) - field.push[j]));
     let weight = field.unit / unit;
+    let of_grounded = if body.soft { terms_of_grounded(field, p) } else { 0.0 };
     let allowed = allowed + NOISE * of_grounded * weight.sqrt();
     let ratio = share(weighted_norm(&resultants, |_| weight), allowed);
     if ratio <= 1.0 && !body.soft {
         return Ok(ratio);
     }
+    let u = felt(&|j| field.answer.u[j]);
     let held =
         if body.soft { held_softly(body, motions, &u)? } else { resisted(field, p)?.mul_transposed(&u) };
     resultants.iter_mut().zip(held).for_each(|(left, held)| *left -= held);
     Ok(share(weighted_norm(&resultants, |_| weight), allowed))
+}
+
+/// `sum_j max_k |R_jk| (|f_j| + sum |b_j||lambda|)` over the grounded unknowns of body p.
+fn terms_of_grounded(field: &Field, p: usize) -> f64 {
+    let (range, motions) = (field.range(p), &field.motions[p].0);
+    let of = |j: usize| {
+        let fastest = |most: f64, k: usize| most.max(motions.get(j - range.start, k).abs());
+        (0..motions.cols).fold(0.0, fastest) * (field.load(p, j).abs() + field.push_terms[j])
+    };
+    range.clone().filter(|j| field.grounded[*j]).map(of).sum()
 }
 
 /// `(K R)'u` of a body, r, in double-double arithmetic: for a weak spring the terms nearly cancel, and if K R is rounding

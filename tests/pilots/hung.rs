@@ -2,7 +2,7 @@
 
 use feti_contact::solver::{Problem, RowKind};
 
-use crate::{add_body, add_rows, assert_near, forces, solved, DUMMY};
+use crate::{add_body, add_rows, assert_a_shift_is_refused, assert_near, forces, solved, DUMMY};
 
 const K: f64 = 1e6;
 const GAPS: [f64; 3] = [0.0, 1e-4, 5e-4];
@@ -56,14 +56,7 @@ fn a_pilot_hung_on_a_spring_has_the_forces_of_equilibrium() {
 fn a_shift_of_forces_below_a_hung_pilot_is_refused() {
     for kp in DUMMY {
         let (mut problem, right, u) = pressed(kp, false);
-        let check = |problem: &mut Problem, shift: f64| {
-            let by = shift * right[0];
-            let lambda = [right[0] + by, right[1] - by, right[2]];
-            problem.check(&[u[0] + by / K, u[1] - by / K, u[2], u[3]], &lambda, &[]).unwrap()
-        };
-        let right = check(&mut problem, 0.0);
-        assert!(right.passed(), "kp {kp:e}: {right:?}");
-        assert!(!check(&mut problem, 1e-6).passed(), "kp {kp:e}");
+        assert_a_shift_is_refused(&mut problem, &u, &right, K, &format!("kp {kp:e}"));
     }
 }
 

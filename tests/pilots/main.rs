@@ -54,6 +54,18 @@ pub fn forces(problem: &Problem) -> [Vec<f64>; 2] {
     [RowKind::Inequality, RowKind::Equality].map(|kind| problem.multipliers(kind).unwrap().to_vec())
 }
 
+/// The right answer passes, whose second row is closed like its first; forces shifted by a millionth of the first from the second to
+/// the first, which the springs k below these rows follow (unknowns 0 and 1), are refused.
+pub fn assert_a_shift_is_refused(problem: &mut Problem, u: &[f64], lambda: &[f64], k: f64, what: &str) {
+    for (shift, passes) in [(0.0, true), (1e-6, false)] {
+        let (mut u, mut forces, by) = (u.to_vec(), lambda.to_vec(), shift * lambda[0]);
+        (forces[0], forces[1]) = (forces[0] + by, forces[1] - by);
+        (u[0], u[1]) = (u[0] + by / k, u[1] - by / k);
+        let certificate = problem.check(&u, &forces, &[]).unwrap();
+        assert_eq!(certificate.passed(), passes, "{what}, shift {shift:e}: {certificate:?}");
+    }
+}
+
 /// Equal to `tolerance` of the largest expected value.
 pub fn assert_near(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     assert_eq!(found.len(), expected.len(), "{what}");

@@ -232,15 +232,8 @@ impl Draft {
             (0..self.deck.bodies.len()).filter(|&p| self.deck.bodies[p].dofs() == 1).collect();
         for p in singles {
             let dof = self.deck.offset(p);
-            let elastic = |j: usize| self.deck.bodies[body_of(&self.deck, j)].dofs() > 1;
-            let joins = |rows: &Rows, i: usize| {
-                let others = || rows.matrix.row(i).map(|(j, _)| j).filter(|j| *j != dof);
-                rows.matrix.row(i).any(|(j, _)| j == dof) && others().count() > 0 && others().all(elastic)
-            };
-            let (contact, equalities) = (&self.deck.contact, &self.deck.equalities);
-            let held = (0..contact.len()).any(|i| self.lambda[i] > 0.0 && joins(contact, i));
-            if held || (0..equalities.len()).any(|i| joins(equalities, i)) {
-                let given = self.given(dof);
+            let given = self.given(dof);
+            if given > 0.0 {
                 pilots.push((dof, given));
                 let kp = self.diagonal[dof] * self.random.decades(-20.0, 0.0);
                 self.deck.bodies[p].stiffness.val[0] = kp;

@@ -57,6 +57,11 @@ impl Matrix {
         self.cols += 1;
     }
 
+    /// Appends the columns of a matrix with equally many rows.
+    pub fn push_cols(&mut self, other: &Matrix) {
+        (0..other.cols).for_each(|j| self.push_col(other.col(j)));
+    }
+
     /// Appends the columns of a matrix with these rows; other rows are 0.
     pub fn push_part(&mut self, part: &Matrix, rows: &[usize]) {
         for j in 0..part.cols {

@@ -47,7 +47,7 @@ pub fn parts(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<Parts> {
     }
     let images = (0..motions.cols).map(|j| product(g_transposed, motions.col(j))).collect();
     let (kernel, weak) = sorted(&motions, images, limit)?;
-    (0..weak.cols).for_each(|j| kept.push_col(weak.col(j)));
+    kept.push_cols(&weak);
     Ok(Parts { kept, kernel, weak: weak.cols > 0 })
 }
 
