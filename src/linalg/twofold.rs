@@ -45,9 +45,60 @@ impl From<f64> for Twofold {
     }
 }
 
+/// A vector in two doubles: the sum of `parts`, the second below the rounding of the first.
+#[derive(Debug, Clone)]
+pub struct TwofoldVector {
+    parts: [Vec<f64>; 2],
+}
+
+impl TwofoldVector {
+    pub fn parts(&self) -> [&[f64]; 2] {
+        [&self.parts[0], &self.parts[1]]
+    }
+
+    pub fn len(&self) -> usize {
+        self.parts[0].len()
+    }
+
+    /// Rounded once.
+    pub fn get(&self, i: usize) -> f64 {
+        self.parts[0][i] + self.parts[1][i]
+    }
+
+    pub fn values(&self) -> Vec<f64> {
+        (0..self.len()).map(|i| self.get(i)).collect()
+    }
+
+    pub fn add(&mut self, i: usize, by: f64) {
+        let mut sum = Twofold { sum: self.parts[0][i], lost: self.parts[1][i] };
+        sum.add(by);
+        (self.parts[0][i], self.parts[1][i]) = (sum.sum, sum.lost);
+    }
+
+    pub fn set_to_zero(&mut self, i: usize) {
+        (self.parts[0][i], self.parts[1][i]) = (0.0, 0.0);
+    }
+}
+
+impl From<Vec<f64>> for TwofoldVector {
+    fn from(v: Vec<f64>) -> Self {
+        let rest = vec![0.0; v.len()];
+        Self { parts: [v, rest] }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Twofold;
+    use super::{Twofold, TwofoldVector};
+
+    #[test]
+    fn a_vector_in_two_doubles_keeps_what_is_added_below_its_rounding() {
+        let mut v = TwofoldVector::from(vec![1.0, 2.0]);
+        (0..4).for_each(|_| v.add(0, 1e-17));
+        assert_eq!((v.get(0), v.parts()[1][0]), (1.0, 4e-17));
+        v.add(0, -1.0);
+        assert_eq!(v.values(), [4e-17, 2.0]);
+    }
 
     #[test]
     fn a_sum_that_cancels_keeps_what_is_left() {

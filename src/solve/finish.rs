@@ -1,10 +1,9 @@
 //! Option `finish`: after a solve, the residuals of the host's data correct forces and displacements together, each time
 //! on the rows that these data show to be in contact, until only rounding is left.
 
-use std::ops::Range;
-
 use crate::certificate::{Certificate, NOISE};
 use crate::error::{Kind, Result};
+use crate::linalg::twofold::TwofoldVector;
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::model::{FinishBy, Method, Settings};
 use crate::platform::interrupt;
@@ -23,9 +22,9 @@ const ROUNDING: f64 = 1e-4;
 const MUCH_BETTER: f64 = 0.5;
 const NO_WORSE: f64 = 1.1;
 
-/// Range of the ratio of forces to deforming forces for which, beside soft bodies and rows that join uneven bodies, the
-/// error of an answer may be much larger than its certificate. Above this range, rounding of the loads is larger.
-const CANCELLING: Range<f64> = 1e4..1e9;
+/// Above this ratio of forces to deforming forces, as beside soft bodies and rows that join uneven bodies, the error of an
+/// answer may be much larger than its certificate.
+const CANCELLING: f64 = 1e4;
 
 /// Errors may also be large on bodies beside others that are deformed more by this factor.
 const UNEVEN: f64 = 100.0;
@@ -42,7 +41,7 @@ pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending) -
 }
 
 fn is_delicate(recovery: &Recovery, ending: &Ending) -> bool {
-    CANCELLING.contains(&ending.judgement.leverage) || recovery.soft || recovery.ready.rows.uneven
+    ending.judgement.leverage >= CANCELLING || recovery.soft || recovery.ready.rows.uneven
 }
 
 /// True if a corrected answer replaced `ending`: it passes and its certificate is no worse. If the host, the time limit
@@ -142,13 +141,13 @@ fn is_better(new: &Certificate, old: &Certificate) -> bool {
 }
 
 /// Forces x and amplitudes alpha with u = v + w: w are motions that K does not resist; in a sum with large w, v would
-/// lose its digits.
+/// lose its digits. v, w and x are in two doubles: where loads and forces nearly cancel, rounding of x would move v.
 struct SplitPoint {
-    v: Vec<f64>,
+    v: TwofoldVector,
     /// Amplitudes of the motions that v contains.
     beta: Vec<f64>,
-    w: Vec<f64>,
-    x: Vec<f64>,
+    w: TwofoldVector,
+    x: TwofoldVector,
     alpha: Vec<f64>,
     /// w is in use.
     apart: bool,
@@ -166,7 +165,8 @@ impl SplitPoint {
     }
 
     fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize, apart: bool) -> Self {
-        Self { w: vec![0.0; v.len()], v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart }
+        let (w, v, x) = (vec![0.0; v.len()].into(), v.into(), x.into());
+        Self { w, v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart }
     }
 
     /// Adds R a and returns R a.
@@ -175,13 +175,13 @@ impl SplitPoint {
         let whole = dual.rigid_motion(a, self.v.len());
         let mut motion = whole.clone();
         let bodies = recovery.data.bodies.len();
-        let apart = if self.apart { recovery.clean(&mut motion, &self.v)? } else { vec![false; bodies] };
+        let apart =
+            if self.apart { recovery.clean(&mut motion, &self.v.values())? } else { vec![false; bodies] };
         for (k, (body, apart)) in recovery.data.bodies.iter().zip(apart).enumerate() {
-            let (range, modes) = (body.range(), dual.modes_of(k));
-            if apart {
-                axpy(1.0, &motion[range.clone()], &mut self.w[range]);
-            } else {
-                axpy(1.0, &motion[range.clone()], &mut self.v[range]);
+            let to = if apart { &mut self.w } else { &mut self.v };
+            body.range().for_each(|j| to.add(j, motion[j]));
+            if !apart {
+                let modes = dual.modes_of(k);
                 axpy(1.0, &a[modes.clone()], &mut self.beta[modes]);
             }
         }
@@ -192,30 +192,30 @@ impl SplitPoint {
     /// u - R alpha
     fn deformed(&self, recovery: &Recovery) -> Vec<f64> {
         let mut v = recovery.ready.dual.rigid_motion(&self.beta, self.v.len());
-        v.iter_mut().zip(&self.v).for_each(|(motion, v)| *motion = v - *motion);
+        v.iter_mut().enumerate().for_each(|(j, motion)| *motion = self.v.get(j) - *motion);
         v
     }
 
     /// u
     fn displacement(&self) -> Vec<f64> {
-        let mut u = self.w.clone();
-        axpy(1.0, &self.v, &mut u);
+        let mut u = self.w.values();
+        axpy(1.0, &self.v.values(), &mut u);
         u
     }
 
     fn gaps_left(&self, recovery: &Recovery) -> Vec<f64> {
-        recovery.gaps_left(&[&self.v, &self.w], &self.x)
+        recovery.gaps_left(&[self.v.parts(), self.w.parts()].concat(), &self.x.parts())
     }
 
     /// Sets the forces to 0 on rows outside the active set.
     fn hold(&mut self, active: &[bool]) {
-        self.x.iter_mut().zip(active).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
+        (0..active.len()).filter(|&i| active[i]).for_each(|i| self.x.set_to_zero(i));
     }
 
     /// x without the rounding of forces that are zero.
     fn forces(&self, bounded: &[bool]) -> Vec<f64> {
-        let bounded = self.x.iter().zip(bounded);
-        bounded.map(|(x, bounded)| if *bounded { x.max(0.0) } else { *x }).collect()
+        let bounded = self.x.values().into_iter().zip(bounded);
+        bounded.map(|(x, bounded)| if *bounded { x.max(0.0) } else { x }).collect()
     }
 
     /// Solves (10)-(11) on the face for the residual loads and gaps, `f - K u - B'x` and `c + C x - B u`: every
@@ -228,7 +228,7 @@ impl SplitPoint {
     ) -> Result<f64> {
         let face = &feedback.face;
         let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
-        let mut load = recovery.load_left(&self.v, &self.x)?;
+        let mut load = recovery.load_left(&self.v.parts(), &self.x.parts())?;
         let left = self.gaps_left(recovery);
         let mut gaps = vec![0.0; self.x.len()];
         face.rows().iter().for_each(|&i| gaps[i] = left[i]);
@@ -239,23 +239,23 @@ impl SplitPoint {
         face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
         rows.take_forces(&forces, &mut load);
         let mut moved = recovery.inverse(&load)?;
-        axpy(1.0, &moved, &mut self.v);
+        moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
         axpy(1.0, &self.turn(recovery, &turn)?, &mut moved);
-        axpy(1.0, &forces, &mut self.x);
+        forces.iter().enumerate().for_each(|(i, force)| self.x.add(i, *force));
         Ok(weighted_norm(&moved, |i| rows.metric[i]))
     }
 
     /// The active set by the signs of forces and gaps.
     fn active(&self, recovery: &Recovery) -> Vec<bool> {
         let (left, rows) = (self.gaps_left(recovery), &recovery.ready.rows.scaled);
-        let u = self.displacement();
+        let (u, x) = (self.displacement(), self.x.values());
         let Gaps { value, bounded, .. } = &recovery.scaled.gaps;
         let terms = |i: usize| rows.row(i).map(|(j, v)| (v * u[j]).abs()).sum::<f64>();
         let noise = |i: usize| NOISE * (value[i].abs() + terms(i));
         // a gap that corrections cannot close depends on other rows, which also carry its force
-        let leaves = |i: usize| self.x[i] < 0.0 || left[i] > noise(i);
-        let stays = |i: usize| if self.x[i] == 0.0 { left[i] >= -noise(i) } else { leaves(i) };
-        (0..self.x.len()).map(|i| bounded[i] && stays(i)).collect()
+        let leaves = |i: usize| x[i] < 0.0 || left[i] > noise(i);
+        let stays = |i: usize| if x[i] == 0.0 { left[i] >= -noise(i) } else { leaves(i) };
+        (0..x.len()).map(|i| bounded[i] && stays(i)).collect()
     }
 }
 

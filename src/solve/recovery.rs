@@ -114,7 +114,7 @@ impl<'a> Recovery<'a> {
         self.ready.rows.take_forces(x, &mut load);
         let mut deformed = self.inverse(&load)?;
         if self.soft {
-            let lost = self.inverse(&self.load_left(&deformed, x)?)?;
+            let lost = self.inverse(&self.load_left(&[&deformed], &[x])?)?;
             axpy(1.0, &lost, &mut deformed);
         }
         Ok(deformed)
@@ -140,14 +140,15 @@ impl<'a> Recovery<'a> {
         [lambda, mu, tangential]
     }
 
-    /// `f - K u - B'lambda - H'mu - T'lambda_t` in units of 2^p, for the forces of x.
-    pub fn load_left(&self, u: &[f64], x: &[f64]) -> Result<Vec<f64>> {
+    /// `f - K u - B'lambda - H'mu - T'lambda_t` in units of 2^p; u is the sum of `motions`, x that of `forces`.
+    pub fn load_left(&self, motions: &[&[f64]], forces: &[&[f64]]) -> Result<Vec<f64>> {
         let unit = self.ready.island.unit;
         let mut left: Vec<Twofold> = self.scaled.load.iter().map(|&f| f.into()).collect();
-        for body in &self.data.bodies {
+        for (body, u) in self.data.bodies.iter().flat_map(|body| motions.iter().map(move |u| (body, u))) {
             body.stiffness.add_twofold(-1.0 / unit, &u[body.range()], &mut left[body.range()])?;
         }
-        for (kind, forces) in RowKind::ALL.into_iter().zip(self.forces_of_host(x)) {
+        for (kind, forces) in forces.iter().flat_map(|x| RowKind::ALL.into_iter().zip(self.forces_of_host(x)))
+        {
             let rows = self.data.rows(kind);
             for (i, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
                 rows.matrix.row(i).for_each(|(j, v)| left[j].add_product(-v, force / unit));
@@ -156,21 +157,22 @@ impl<'a> Recovery<'a> {
         Ok(left.into_iter().map(Twofold::value).collect())
     }
 
-    /// `c + C x - B u` of the rows of the dual, u being the sum of `parts`; 0 for springs of bodies, which are part of K.
-    pub fn gaps_left(&self, parts: &[&[f64]], x: &[f64]) -> Vec<f64> {
-        let rows = &self.ready.rows;
-        let forces = self.forces_of_host(x);
+    /// `c + C x - B u` of the rows of the dual, u being the sum of `motions`, x that of `forces`; 0 for springs of bodies,
+    /// which are part of K.
+    pub fn gaps_left(&self, motions: &[&[f64]], forces: &[&[f64]]) -> Vec<f64> {
+        let (rows, order) = (&self.ready.rows, forces[0].len());
+        let forces: Vec<_> = forces.iter().map(|x| self.forces_of_host(x)).collect();
         let mut left = rows.scaling.lengths_to_dual(&self.scaled.gaps.holder, |holder| {
             let (kind, i) = self.ready.island.kind_and_place(holder);
-            let (set, force) = (self.data.rows(kind), forces[kind as usize][i]);
+            let set = self.data.rows(kind);
             let mut left = Twofold::from(set.rhs[i]);
-            left.add_product(set.compliance[i], force);
-            for part in parts {
-                set.matrix.row(i).for_each(|(j, v)| left.add_product(-v, part[j]));
+            forces.iter().for_each(|x| left.add_product(set.compliance[i], x[kind as usize][i]));
+            for u in motions {
+                set.matrix.row(i).for_each(|(j, v)| left.add_product(-v, u[j]));
             }
             left.value()
         });
-        left.resize(x.len(), 0.0);
+        left.resize(order, 0.0);
         left
     }
 
@@ -230,8 +232,8 @@ mod tests {
     #[test]
     fn what_is_left_keeps_its_digits_where_large_numbers_cancel() {
         two_springs(0.0, |judge, _| {
-            assert_eq!(judge.recovery.load_left(&[1e16, 0.0], &[-1e16, 0.0]).unwrap(), [3.0, 1.0]);
-            assert_eq!(judge.recovery.gaps_left(&[&[1e16, 1.0], &[-1e16, 0.0]], &[0.0; 2]), [1.0, 1.0]);
+            assert_eq!(judge.recovery.load_left(&[&[1e16, 0.0]], &[&[-1e16, 0.0]]).unwrap(), [3.0, 1.0]);
+            assert_eq!(judge.recovery.gaps_left(&[&[1e16, 1.0], &[-1e16, 0.0]], &[&[0.0; 2]]), [1.0, 1.0]);
         });
     }
 }

@@ -61,7 +61,7 @@ impl<'a> Recovery<'a> {
             return Ok(None);
         }
         let mut u = deformed.to_vec();
-        let mut open = self.gaps_left(&[&u], x);
+        let mut open = self.gaps_left(&[&u], &[x]);
         // (F x)_s = x_s on the springs of bodies
         let springs = open.len() - dual.springs..;
         open[springs.clone()].copy_from_slice(&x[springs]);
