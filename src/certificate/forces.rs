@@ -28,7 +28,7 @@ pub(super) struct Forces {
     /// Deformation of every body, `U |delta|_D` without grounded unknowns, and of the island, force.
     strains: Vec<f64>,
     strain: f64,
-    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit.
+    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body and `(|f_j| + |r_j|) / |D_j u_j|` of a grounded unknown, no unit.
     pub leverage: f64,
     /// Some force is not 0.
     acting: bool,
@@ -55,7 +55,7 @@ impl Forces {
         });
         let strains: Vec<f64> = strains.collect();
         let of_body = |(size, strain): (&Option<f64>, &f64)| ratio(size.unwrap_or(0.0), *strain);
-        let leverage = sizes.iter().zip(&strains).map(of_body).fold(0.0, f64::max);
+        let leverage = sizes.iter().zip(&strains).map(of_body).fold(of_grounded(field), f64::max);
         let strain = weighted_norm(&strains, |_| 1.0);
         let unloaded = loads.iter().map(|load| *load <= NOISE * forces).collect();
         Self { sizes, unloaded, everywhere: forces + moved, strains, strain, leverage, acting: forces > 0.0 }
@@ -98,6 +98,16 @@ impl Forces {
             None => field.data.limit * alone(rows, i),
         }
     }
+}
+
+/// The largest `(|f_j| + |r_j|) / |D_j u_j|` of a grounded unknown, no unit.
+fn of_grounded(field: &Field) -> f64 {
+    let of = |p: usize, j: usize| {
+        let acting = field.load(p, j).abs() + field.push[j].abs();
+        ratio(acting / field.unit, field.metric[j] * field.answer.u[j].abs())
+    };
+    let own = |p: usize| field.range(p).filter(|j| field.grounded[*j]).map(move |j| of(p, j));
+    (0..field.data.bodies.len()).flat_map(own).fold(0.0, f64::max)
 }
 
 /// The force `(-c_i)_+ / C_i` of a spring without entries, `-c_i <= C_i lambda_i`.

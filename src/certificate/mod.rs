@@ -155,8 +155,8 @@ pub struct Judgement {
     pub nodes: Vec<FrictionState>,
     /// `|S L|` over all rows, (force x length)^1/2: the lengths to which gaps are relative, without rigid travel.
     pub length: f64,
-    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit: the certificate cannot detect relative errors of
-    /// a deformation below this multiple of tol.
+    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body or of a grounded unknown, no unit: the certificate cannot detect
+    /// relative errors of a deformation below this multiple of tol.
     pub leverage: f64,
     /// The largest `s_i (|b_i| delta + ..)` of a row with a force, relative to `max(|delta|_D, (|f| + |r|)_{D^-1})` of a
     /// body that it touches, no unit: the certificate cannot detect relative errors of the deformation of this body below

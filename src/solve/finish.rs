@@ -11,6 +11,7 @@ use crate::qp::{Face, Verdict};
 use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Faces, Recovery};
+use crate::solve::slides::FAR;
 
 /// Limit of active sets.
 const FACES: usize = 16;
@@ -45,11 +46,15 @@ fn is_delicate(recovery: &Recovery, ending: &Ending) -> bool {
 }
 
 /// True if a corrected answer replaced `ending`: it passes and its certificate is no worse. If the host, the time limit
-/// or a lack of memory stops the finish, `ending` stays solved.
+/// or a lack of memory stops the finish, `ending` stays solved. Nothing is corrected where motions count as undetermined
+/// although rows of the host resist them a little: these rows would move bodies along them.
 pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
-    let delicate = is_delicate(recovery, ending);
+    if recovery.scaled.cleaned.is_some() {
+        return Ok(false);
+    }
     let negative = NegativeMotions::of(recovery.ready);
-    let mut finish = Finish { recovery, ending, delicate, replaced: false, negative };
+    let apart = if is_delicate(recovery, ending) { 1.0 } else { FAR };
+    let mut finish = Finish { recovery, ending, apart, replaced: false, negative };
     match finish.run() {
         Ok(()) => {}
         Err(error) if error.kind == Kind::Memory => {}
@@ -57,7 +62,7 @@ pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
     }
     let Finish { ending, replaced, .. } = finish;
     if replaced {
-        recovery.bring_to_rest(ending, delicate)?;
+        recovery.bring_to_rest(ending, true)?;
     }
     Ok(replaced)
 }
@@ -65,8 +70,8 @@ pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
 struct Finish<'a, 'b> {
     recovery: &'b Recovery<'a>,
     ending: &'b mut Ending,
-    /// Resistance of K to rigid motions is rounding, not strain; for other bodies K is used unchanged.
-    delicate: bool,
+    /// Motions larger than the deformation by this factor are kept apart from it.
+    apart: f64,
     replaced: bool,
     negative: NegativeMotions,
 }
@@ -76,7 +81,7 @@ impl Finish<'_, '_> {
     fn run(&mut self) -> Result<()> {
         let Faces { qp, direct } = &self.recovery.faces;
         let mut active = qp.at_bound(&self.ending.solution.x);
-        let mut point = SplitPoint::of(self.recovery, self.ending, self.delicate)?;
+        let mut point = SplitPoint::of(self.recovery, self.ending, self.apart)?;
         let mut visited: Vec<Vec<bool>> = Vec::new();
         while visited.len() < FACES && !visited.contains(&active) {
             let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
@@ -91,9 +96,6 @@ impl Finish<'_, '_> {
             if face.face.is_truncated() {
                 face = Feedback::on(face.face.in_full()?, point.alpha.len(), &self.negative)?;
                 self.correct(&mut point, &face)?;
-            }
-            if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
-                break;
             }
             visited.push(std::mem::replace(&mut active, point.active(self.recovery)));
         }
@@ -149,13 +151,13 @@ struct SplitPoint {
     w: TwofoldVector,
     x: TwofoldVector,
     alpha: Vec<f64>,
-    /// w is in use.
-    apart: bool,
+    /// A motion of a body is added to w where it is larger than v by this factor.
+    apart: f64,
 }
 
 impl SplitPoint {
     /// The current answer, or zero if it does not pass: redundant rows may have spoilt its forces.
-    fn of(recovery: &Recovery, ending: &Ending, apart: bool) -> Result<Self> {
+    fn of(recovery: &Recovery, ending: &Ending, apart: f64) -> Result<Self> {
         let Ending { solution, judgement, .. } = ending;
         let known = |v: &[f64]| if judgement.certificate.passed() { v.to_vec() } else { vec![0.0; v.len()] };
         let x = known(&solution.x);
@@ -164,7 +166,7 @@ impl SplitPoint {
         Ok(point)
     }
 
-    fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize, apart: bool) -> Self {
+    fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize, apart: f64) -> Self {
         let (w, v, x) = (vec![0.0; v.len()].into(), v.into(), x.into());
         Self { w, v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart }
     }
@@ -174,9 +176,7 @@ impl SplitPoint {
         let dual = &recovery.ready.dual;
         let whole = dual.rigid_motion(a, self.v.len());
         let mut motion = whole.clone();
-        let bodies = recovery.data.bodies.len();
-        let apart =
-            if self.apart { recovery.clean(&mut motion, &self.v.values())? } else { vec![false; bodies] };
+        let apart = recovery.clean(&mut motion, &self.v.values(), self.apart)?;
         for (k, (body, apart)) in recovery.data.bodies.iter().zip(apart).enumerate() {
             let to = if apart { &mut self.w } else { &mut self.v };
             body.range().for_each(|j| to.add(j, motion[j]));
@@ -289,14 +289,14 @@ mod tests {
             let recovery = &judge.recovery;
             for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
                 let mut ending = recovery.ending(solved.clone()).unwrap();
-                let mut point = SplitPoint::at_origin(ending.recovered.u.clone(), solved.x.clone(), 0, false);
+                let mut point = SplitPoint::at_origin(ending.recovered.u.clone(), solved.x.clone(), 0, 1.0);
                 point.hold(&[0, 1].map(|i| !rows.contains(&i)));
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
                 let negative = NegativeMotions::of(recovery.ready);
                 let face = Feedback::on(face, 0, &negative).unwrap();
                 let mut finish =
-                    Finish { recovery, ending: &mut ending, delicate: false, replaced: false, negative };
+                    Finish { recovery, ending: &mut ending, apart: 1.0, replaced: false, negative };
                 finish.correct(&mut point, &face).unwrap();
                 assert_eq!(finish.replaced, right, "{rows:?}");
                 assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");
@@ -309,7 +309,7 @@ mod tests {
     fn a_force_that_rounding_has_made_negative_is_none_and_its_row_leaves() {
         two_springs(0.0, |judge, _| {
             let recovery = &judge.recovery;
-            let point = SplitPoint::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0, false);
+            let point = SplitPoint::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0, 1.0);
             assert_eq!(point.forces(&[true, true]), [2.0, 0.0]);
             assert_eq!(point.active(recovery), [false, true]);
         });

@@ -223,9 +223,9 @@ fn attempt(
     if goes_on && dual.cleaned.is_some() && !dual.excused && !ending.judgement.certificate.passed() {
         return Ok(Tried::Leaves { x: ending.solution.x });
     }
-    let slide = slides.worst();
     let is_solved = ending.solution.verdict == Verdict::Solved;
     let finished = is_solved && is_to_finish(settings, recovery, &ending) && finish(recovery, &mut ending)?;
+    let slide = if finished { interrupt::never(|| recovery.slides(&ending))? } else { slides }.worst();
     let mut outcome = outcome(case, dual, &ending.solution)?;
     if outcome == Outcome::Solved && !ending.judgement.certificate.passed() {
         outcome = Outcome::Inaccurate;

@@ -176,15 +176,14 @@ impl<'a> Recovery<'a> {
         left
     }
 
-    /// Cleans a motion where it is larger than v. Per body: whether it is larger than v and K resists it by rounding
-    /// alone.
-    pub fn clean(&self, motion: &mut [f64], v: &[f64]) -> Result<Vec<bool>> {
+    /// Cleans a motion where it is larger than v by a factor. Per body: whether it is, and K resists it by rounding alone.
+    pub fn clean(&self, motion: &mut [f64], v: &[f64], factor: f64) -> Result<Vec<bool>> {
         let length =
             |body: &BodyData, u: &[f64]| weighted_norm(u, |i| self.ready.rows.metric[body.start + i]);
         let mut cleaners = self.cleaners.borrow_mut();
         let clean = |(body, cleaner): (&BodyData, &mut Option<Cleaner>)| {
             let (motion, v) = (&mut motion[body.range()], &v[body.range()]);
-            Ok(length(body, motion) > length(body, v) && unresisted(body, motion, cleaner)?)
+            Ok(length(body, motion) > factor * length(body, v) && unresisted(body, motion, cleaner)?)
         };
         self.data.bodies.iter().zip(cleaners.iter_mut()).map(clean).collect()
     }

@@ -68,7 +68,7 @@ impl<'a> Recovery<'a> {
         let mut alpha = dual.balanced(x, &face.fitted(&open)?);
         let add = |mut motion: Vec<f64>, u: &mut [f64]| -> Result<()> {
             if exact {
-                self.clean(&mut motion, u)?;
+                self.clean(&mut motion, u, 1.0)?;
             }
             axpy(1.0, &motion, u);
             Ok(())

@@ -17,7 +17,7 @@ use crate::solve::held::without_force;
 use crate::solve::recovery::{Ending, Recovery};
 
 /// A body slides if it moves farther than it deforms by this factor ...
-const FAR: f64 = 1e4;
+pub const FAR: f64 = 1e4;
 /// ... and each row with a force resists this motion by less than this part of its own terms.
 const WEAK: f64 = 1e-4;
 

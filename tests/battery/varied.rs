@@ -71,10 +71,10 @@ fn error(case: &Varied, found: &Answer) -> (f64, usize) {
 /// Seeds that were solved wrongly before answers of ill-conditioned bodies were finished, then some that were not solved at all:
 /// glue of soft bodies, travel with a null space of little accuracy, forces lost between redundant rows, loads that nearly
 /// cancel forces.
-const ONCE_WRONG: [u64; 35] = [
+const ONCE_WRONG: [u64; 34] = [
     2998, 8120, 9758, 15803, 39086, 42687, 47393, 47536, 49382, 66555, 79945, 84197, 84742, 85288, 99459,
-    99796, 93, 704, 1906, 3635, 8016, 8783, 25020, 59002, 83754, 98416, 20092, 31742, 13048978, 13064747,
-    13067776, 13112223, 13135662, 13145139, 13184217,
+    99796, 93, 704, 1906, 3635, 8016, 8783, 25020, 59002, 83754, 98416, 31742, 13048978, 13064747, 13067776,
+    13112223, 13135662, 13145139, 13184217,
 ];
 
 /// The same of the second mixture: moduli within a body together with travel, a noisy null space or a last Newton iteration.
