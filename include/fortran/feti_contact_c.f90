@@ -778,8 +778,8 @@ module feti_contact_c
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) number of held unknowns to read: 0 to n - 1; at most the number of unknowns
-    !>                  of the body, or of its held ones
+    !> @param[in]  n    (scalar) length of `r`: held unknowns 0 to n - 1 are read, also if the body has more
+    !>                  or fewer; at most the number of its unknowns, or of its held ones
     !> @param[out] r    (n) force; 0 for a held unknown that no element has
     !>
     !> Safety: The array has the given shape.
