@@ -42,14 +42,14 @@ impl Assembled {
         self.diagonal[i]
     }
 
-    /// `D_ii` of the metric for K: `K_ii`, or `without` for a dof without stiffness.
+    /// `D_ii` of the metric for K: `|K_ii|`, or `without` for a dof without stiffness.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
-        Some(self.diagonal[i]).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
+        Some(self.diagonal[i].abs()).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
     }
 
-    /// `max K_ii`
+    /// `max |K_ii|`
     pub fn largest_diagonal(&self) -> f64 {
-        self.diagonal.iter().copied().fold(0.0, f64::max)
+        self.diagonal.iter().fold(0.0, |largest, k| k.abs().max(largest))
     }
 
     /// `y = K x`

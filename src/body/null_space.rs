@@ -66,7 +66,7 @@ const LARGEST: f64 = 1e150;
 pub trait Products {
     /// The terms to which products with R are relative, in words.
     const TERMS: &'static str;
-    /// `K_ii`, or `without` for a dof without stiffness.
+    /// `D_ii`, or `without` for a dof without stiffness.
     fn metric(&self, i: usize, without: f64) -> f64;
     /// `K X`, and the terms to which its rounding errors are relative.
     fn mul_columns(&self, x: &Matrix) -> Result<(Matrix, Matrix)>;

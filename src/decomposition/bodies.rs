@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::body::{check_diagonal, Body};
+use crate::body::Body;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Symmetric;
 use crate::mesh::{Mesh, Piece};
@@ -142,10 +142,6 @@ impl Split<'_> {
     /// stiffness all copies have equal weights.
     fn piece(&mut self, number: usize, piece: &Piece, copies: &[u32]) -> Result<Vec<(Body, Part)>> {
         let Piece { dofs, stiffness } = piece;
-        check_diagonal(stiffness).map_err(|e| match e.place.dof {
-            Some(i) => e.dof(dofs[i] as usize),
-            None => e,
-        })?;
         let Some(components) = Components::of(stiffness)? else {
             return Ok(vec![self.of_piece(number, Arc::clone(dofs), Arc::clone(stiffness), copies)?]);
         };
