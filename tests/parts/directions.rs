@@ -189,6 +189,22 @@ fn weak_springs_and_stiffness_beside_penalties_are_no_rounding() {
     assert!((problem.displacements().unwrap()[0] - 2.0).abs() < 1e-9, "{:?}", problem.displacements());
 }
 
+/// Two bodies, the second along the rounding of the normal of a row on the first.
+#[test]
+fn the_rounding_of_a_normal_joins_no_bodies() {
+    for rounded in [upright()[0], 1e-14] {
+        let mut problem = Problem::new();
+        for load in [-0.3, 0.2] {
+            let body = problem.add_body(1).unwrap();
+            problem.set_stiffness_dense(body, 1, &[1.0], 1, Storage::Full).unwrap();
+            problem.set_load(body, &[load]).unwrap();
+        }
+        row(&mut problem, &[(0, -1.0), (1, rounded)], 0.25);
+        assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+        assert!((problem.multipliers(RowKind::Inequality).unwrap()[0] - 0.05).abs() < 1e-12);
+    }
+}
+
 #[test]
 fn a_lagrange_multiplier_beside_stiff_unknowns_is_no_rounding() {
     let mut problem = Problem::new();
