@@ -95,7 +95,7 @@ impl Components {
 /// with 4e-33: `K_ij` is rounding of `K_jj`, `K_ii` is rounding of `K_ij`, and K need not be indefinite for it, as it is
 /// with a Lagrange multiplier. No other entry may join such an unknown to one that has stiffness. Empty if there are
 /// none.
-fn slight(k: &Symmetric) -> Result<Vec<bool>> {
+pub fn slight(k: &Symmetric) -> Result<Vec<bool>> {
     let entries = || {
         let row = |i: usize| k.lower_row(i).filter(move |&(j, v)| j < i && v != 0.0);
         (0..k.order()).flat_map(move |i| row(i).map(move |(j, v)| (i, j, v.abs())))

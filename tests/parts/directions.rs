@@ -142,6 +142,25 @@ fn a_load_across_a_bar_is_not_held_and_a_row_holds_it() {
     assert!(found.iter().zip(known).all(|(u, known)| (u - known).abs() < 1e-13), "{found:?}");
 }
 
+#[test]
+fn a_tower_that_is_cut_into_pieces_is_judged_without_what_rounding_resists() {
+    for pieces in [1, 2, 4] {
+        let (nodes, mut problem) = (12, Problem::new());
+        problem.set_i64("pieces", pieces).unwrap();
+        problem.add_body(2 * nodes).unwrap();
+        let ptr: Vec<usize> = (0..nodes).map(|e| 4 * e).collect();
+        let dof: Vec<i64> = (0..nodes as i64 - 1).flat_map(|e| 2 * e..2 * e + 4).collect();
+        problem.set_mesh(0, &ptr, &dof).unwrap();
+        let bar = stiffness(2, &[(Some(0), 1, 1.0, upright())]);
+        (0..nodes - 1).for_each(|e| problem.add_element(0, e, 4, &bar, 4).unwrap());
+        load(&mut problem, 2 * nodes, &[(2 * nodes - 1, 1.0)]);
+        row(&mut problem, &[(1, 1.0)], 0.25);
+        assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved, "{pieces} pieces");
+        let found = problem.displacements().unwrap();
+        assert!((found[2 * nodes - 1] - 11.25).abs() < 1e-9, "{pieces} pieces: {found:?}");
+    }
+}
+
 /// A bar hangs on a node that other bars hold in both directions: its free end has no stiffness across.
 #[test]
 fn the_free_end_of_a_bar_that_hangs_on_a_truss_rests() {
