@@ -239,12 +239,10 @@ static int32_t newton(feti_problem *problem, matrix *k, double depth, double *u,
         double f[N], d[N];
         const double last = change;
         const feti_info before = *info;
-        int32_t status;
         assemble(u, k, f);
         for (int i = 0; i < N; i++) f[i] = -f[i];
         add_curvature(u, lambda, rub, depth, k);
-        status = feti_body_values(problem, 0, k->ptr[N], k->val);
-        if (status != FETI_OK) return status; /* FETI_INDEFINITE: a diagonal entry is negative, the step is too large */
+        CALL(feti_body_values(problem, 0, k->ptr[N], k->val));
         CALL(feti_body_load(problem, 0, N, f));
         give_rows(problem, u, u, depth);
         if (rub->mu > 0.0) {
@@ -252,7 +250,7 @@ static int32_t newton(feti_problem *problem, matrix *k, double depth, double *u,
             CALL(feti_start_from(problem, FETI_TANGENTIAL, ROWS, rub->lambda_t));
         }
         CALL(feti_start_from(problem, FETI_INEQUALITY, ROWS, lambda)); /* the pairs are those of the last iterate */
-        status = feti_solve(problem, info);
+        const int32_t status = feti_solve(problem, info); /* FETI_INDEFINITE: the step is too large */
         if (status < 0) *info = before; /* the counts of a call that failed are zero */
         add_cost(sum, info, &before);
         if (status != FETI_OK) return status;

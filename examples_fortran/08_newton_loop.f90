@@ -162,8 +162,7 @@ contains
       before = info
       call assemble(u, f)
       call add_curvature(at_depth)
-      call feti_body_values(problem, body, val(:entries), stat=stat)
-      if (stat /= FETI_OK) return   ! FETI_INDEFINITE: a diagonal entry is negative, the step is too large
+      call feti_body_values(problem, body, val(:entries))
       call feti_body_load(problem, body, -f)
       call give_rows(u, at_depth)
       if (mu > 0) then
@@ -171,7 +170,7 @@ contains
         call feti_start_from(problem, FETI_TANGENTIAL, lambda_t)
       end if
       call feti_start_from(problem, FETI_INEQUALITY, lambda)   ! the pairs are those of the last iterate
-      call feti_solve(problem, info, stat=stat)
+      call feti_solve(problem, info, stat=stat)   ! FETI_INDEFINITE: the step is too large
       if (stat < 0) info = before   ! the counts of a call that failed are zero
       call add_cost(before)
       if (stat /= FETI_OK) return

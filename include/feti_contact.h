@@ -228,9 +228,9 @@ int32_t feti_body_add(struct feti_problem *p, int64_t n, int64_t *body);
  *
  * The library copies the matrix; another call replaces pattern and values. The columns of a row
  * may come in any order, but none twice. With FETI_FULL, K must be symmetric within option
- * symmetry_tolerance; the library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is
- * negative, or is 0 in a row with other entries; the error detail names the unknown. After a
- * failure the body keeps its previous matrix.
+ * symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0
+ * in a row with other entries, is refused by feti_setup, unless the motions of the body are
+ * FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
  *
  * With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if
  * storage is FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it
@@ -267,9 +267,9 @@ int32_t feti_body_stiffness_i32(struct feti_problem *p,
  *
  * The library copies the matrix; another call replaces pattern and values. The columns of a row
  * may come in any order, but none twice. With FETI_FULL, K must be symmetric within option
- * symmetry_tolerance; the library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is
- * negative, or is 0 in a row with other entries; the error detail names the unknown. After a
- * failure the body keeps its previous matrix.
+ * symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0
+ * in a row with other entries, is refused by feti_setup, unless the motions of the body are
+ * FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
  *
  * With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if
  * storage is FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it
@@ -307,8 +307,9 @@ int32_t feti_body_stiffness_i64(struct feti_problem *p,
  * For codes that store the diagonal in a separate array. The library copies the matrix; another
  * call replaces pattern and values. The columns of a row may come in any order, but none twice.
  * With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij
- * and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries;
- * the error detail names the unknown. After a failure the body keeps its previous matrix.
+ * and K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is refused by
+ * feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a failure
+ * the body keeps its previous matrix.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -342,8 +343,9 @@ int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
  * For codes that store the diagonal in a separate array. The library copies the matrix; another
  * call replaces pattern and values. The columns of a row may come in any order, but none twice.
  * With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij
- * and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries;
- * the error detail names the unknown. After a failure the body keeps its previous matrix.
+ * and K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is refused by
+ * feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a failure
+ * the body keeps its previous matrix.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -376,9 +378,9 @@ int32_t feti_body_stiffness_split_i64(struct feti_problem *p,
  * bodies.
  *
  * The library copies the matrix; another call replaces it. With FETI_LOWER and FETI_UPPER the
- * other triangle is not read. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row
- * with other entries; the error detail names the unknown. After a failure the body keeps its
- * previous matrix.
+ * other triangle is not read. A diagonal entry that is negative, or 0 in a row with other entries,
+ * is refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space).
+ * After a failure the body keeps its previous matrix.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -566,13 +568,14 @@ int32_t feti_body_coordinates_flags(struct feti_problem *p, int64_t body, int32_
  * of the unknowns give candidates (feti_body_coordinates); without coordinates the library finds
  * the null space from K. feti_setup checks that `K R = 0` holds. With FETI_SOFT this equation need
  * not hold: weak springs, rounding of the entries of K and geometric stiffness may give the
- * motions a positive or negative stiffness. The columns then only choose the fixing unknowns; the
- * library computes the motions and their stiffness from K and takes them into account exactly. If
- * K is still indefinite with these unknowns fixed, the library fixes up to six more, each with its
- * own column in feti_body_null_space_get. FETI_UNSUPPORTED from feti_setup if the host provides K+
- * (feti_body_operator); FETI_INDEFINITE from feti_setup if K has negative stiffness along more
- * motions than that, and from feti_solve if the contact does not restrain a motion with negative
- * stiffness. After a failure the body keeps its previous basis.
+ * motions a positive or negative stiffness, and diagonal entries of K may be negative. The columns
+ * then only choose the fixing unknowns; the library computes the motions and their stiffness from
+ * K and takes them into account exactly. If K is still indefinite or singular with these unknowns
+ * fixed, the library fixes up to six more, each with its own column in feti_body_null_space_get.
+ * FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator); FETI_INDEFINITE
+ * from feti_setup if K has negative stiffness along more motions than that, and from feti_solve if
+ * the contact does not restrain a motion with negative stiffness. After a failure the body keeps
+ * its previous basis.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0
@@ -852,8 +855,8 @@ int32_t feti_body_elements_size(struct feti_problem *p,
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) number of held unknowns to read: 0 to n - 1; at most the number of
- *                  unknowns of the body, or of its held ones
+ * @param[in]  n    (scalar) length of `r`: held unknowns 0 to n - 1 are read, also if the body has
+ *                  more or fewer; at most the number of its unknowns, or of its held ones
  * @param[out] r    (n) force; 0 for a held unknown that no element has
  *
  * Safety: The array has the given shape.
@@ -1659,12 +1662,12 @@ typedef struct feti_info {
  *
  * FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of
  * a body is not the one that was given, or cannot be found; FETI_INDEFINITE if a matrix is
- * indefinite, with body, unknown and pivot in the error detail; FETI_GAPS_CONTRADICT if a row
- * without entries has a right-hand side that 0 does not satisfy; FETI_CALLBACK if a function of
- * the host fails or violates its requirements (feti_body_operator); FETI_UNSUPPORTED if fixing
- * unknowns were given for a body with functions of the host instead of a matrix; FETI_OVERFLOW if
- * the square of a row, or a compliance times the largest K_ii, overflows or underflows;
- * FETI_CANCELLED if the host has cancelled.
+ * indefinite, with body, unknown and pivot or diagonal entry in the error detail;
+ * FETI_GAPS_CONTRADICT if a row without entries has a right-hand side that 0 does not satisfy;
+ * FETI_CALLBACK if a function of the host fails or violates its requirements (feti_body_operator);
+ * FETI_UNSUPPORTED if fixing unknowns were given for a body with functions of the host instead of
+ * a matrix; FETI_OVERFLOW if the square of a row, or a compliance times the largest K_ii,
+ * overflows or underflows; FETI_CANCELLED if the host has cancelled.
  *
  * @param[in] p (scalar) the handle
  */
@@ -2018,9 +2021,7 @@ int32_t feti_start_from(struct feti_problem *p, int32_t kind, int64_t rows, cons
  * The values are copied and checked like the first ones. The library keeps the symbolic analysis,
  * so the next setup costs only a numeric factorisation of this body; bit-identical values cost
  * nothing. The storage is the one of the first call. FETI_STATE if the matrix has not been given,
- * or was given in another form. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row
- * with other entries; the error detail names the unknown. After a failure the body keeps its
- * previous values.
+ * or was given in another form. After a failure the body keeps its previous values.
  *
  * Borrowed values (FETI_BORROW) are not copied: `val` is either the borrowed array, which the host
  * has rewritten, or another array that replaces it. The values count as changed, also for other
@@ -2040,9 +2041,8 @@ int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, cons
  * Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
  *
  * The call works like feti_body_values, for a matrix with a separate diagonal. FETI_STATE if the
- * matrix has not been given, or was given in another form. FETI_INDEFINITE if a diagonal entry is
- * negative, or is 0 in a row with other entries; the error detail names the unknown. After a
- * failure the body keeps its previous values.
+ * matrix has not been given, or was given in another form. After a failure the body keeps its
+ * previous values.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
@@ -2065,9 +2065,7 @@ int32_t feti_body_values_split(struct feti_problem *p,
  *
  * The matrix is copied and checked like the first one, in the same storage. If all zeros stay
  * zero, the library keeps the symbolic analysis. FETI_STATE if the matrix has not been given, or
- * was given in another form. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row
- * with other entries; the error detail names the unknown. After a failure the body keeps its
- * previous matrix.
+ * was given in another form. After a failure the body keeps its previous matrix.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0

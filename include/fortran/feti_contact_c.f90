@@ -101,8 +101,9 @@ module feti_contact_c
     !>
     !> The library copies the matrix; another call replaces pattern and values. The columns of a row may come
     !> in any order, but none twice. With FETI_FULL, K must be symmetric within option symmetry_tolerance; the
-    !> library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with
-    !> other entries; the error detail names the unknown. After a failure the body keeps its previous matrix.
+    !> library averages K_ij and K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is
+    !> refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a
+    !> failure the body keeps its previous matrix.
     !>
     !> With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is
     !> FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it copies everything
@@ -141,8 +142,9 @@ module feti_contact_c
     !>
     !> The library copies the matrix; another call replaces pattern and values. The columns of a row may come
     !> in any order, but none twice. With FETI_FULL, K must be symmetric within option symmetry_tolerance; the
-    !> library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with
-    !> other entries; the error detail names the unknown. After a failure the body keeps its previous matrix.
+    !> library averages K_ij and K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is
+    !> refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a
+    !> failure the body keeps its previous matrix.
     !>
     !> With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is
     !> FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it copies everything
@@ -181,9 +183,10 @@ module feti_contact_c
     !>
     !> For codes that store the diagonal in a separate array. The library copies the matrix; another call
     !> replaces pattern and values. The columns of a row may come in any order, but none twice. With
-    !> FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and K_ji.
-    !> FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the error detail
-    !> names the unknown. After a failure the body keeps its previous matrix.
+    !> FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and K_ji. A
+    !> diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the
+    !> motions of the body are FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous
+    !> matrix.
     !>
     !> @param[in] p       (scalar) the handle
     !> @param[in] body    (scalar) number of the body, from 0
@@ -219,9 +222,10 @@ module feti_contact_c
     !>
     !> For codes that store the diagonal in a separate array. The library copies the matrix; another call
     !> replaces pattern and values. The columns of a row may come in any order, but none twice. With
-    !> FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and K_ji.
-    !> FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the error detail
-    !> names the unknown. After a failure the body keeps its previous matrix.
+    !> FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and K_ji. A
+    !> diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the
+    !> motions of the body are FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous
+    !> matrix.
     !>
     !> @param[in] p       (scalar) the handle
     !> @param[in] body    (scalar) number of the body, from 0
@@ -256,8 +260,9 @@ module feti_contact_c
     !> Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
     !>
     !> The library copies the matrix; another call replaces it. With FETI_LOWER and FETI_UPPER the other
-    !> triangle is not read. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other
-    !> entries; the error detail names the unknown. After a failure the body keeps its previous matrix.
+    !> triangle is not read. A diagonal entry that is negative, or 0 in a row with other entries, is refused
+    !> by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a failure the
+    !> body keeps its previous matrix.
     !>
     !> @param[in] p       (scalar) the handle
     !> @param[in] body    (scalar) number of the body, from 0
@@ -462,12 +467,13 @@ module feti_contact_c
     !> unknowns give candidates (feti_body_coordinates); without coordinates the library finds the null space
     !> from K. feti_setup checks that `K R = 0` holds. With FETI_SOFT this equation need not hold: weak
     !> springs, rounding of the entries of K and geometric stiffness may give the motions a positive or
-    !> negative stiffness. The columns then only choose the fixing unknowns; the library computes the motions
-    !> and their stiffness from K and takes them into account exactly. If K is still indefinite with these
-    !> unknowns fixed, the library fixes up to six more, each with its own column in feti_body_null_space_get.
-    !> FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator); FETI_INDEFINITE from
-    !> feti_setup if K has negative stiffness along more motions than that, and from feti_solve if the contact
-    !> does not restrain a motion with negative stiffness. After a failure the body keeps its previous basis.
+    !> negative stiffness, and diagonal entries of K may be negative. The columns then only choose the fixing
+    !> unknowns; the library computes the motions and their stiffness from K and takes them into account
+    !> exactly. If K is still indefinite or singular with these unknowns fixed, the library fixes up to six
+    !> more, each with its own column in feti_body_null_space_get. FETI_UNSUPPORTED from feti_setup if the
+    !> host provides K+ (feti_body_operator); FETI_INDEFINITE from feti_setup if K has negative stiffness
+    !> along more motions than that, and from feti_solve if the contact does not restrain a motion with
+    !> negative stiffness. After a failure the body keeps its previous basis.
     !>
     !> @param[in] p     (scalar) the handle
     !> @param[in] body  (scalar) number of the body, from 0
@@ -778,8 +784,8 @@ module feti_contact_c
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) number of held unknowns to read: 0 to n - 1; at most the number of unknowns
-    !>                  of the body, or of its held ones
+    !> @param[in]  n    (scalar) length of `r`: held unknowns 0 to n - 1 are read, also if the body has more
+    !>                  or fewer; at most the number of its unknowns, or of its held ones
     !> @param[out] r    (n) force; 0 for a held unknown that no element has
     !>
     !> Safety: The array has the given shape.
@@ -1566,11 +1572,11 @@ module feti_contact_c
     !>
     !> FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of a body
     !> is not the one that was given, or cannot be found; FETI_INDEFINITE if a matrix is indefinite, with
-    !> body, unknown and pivot in the error detail; FETI_GAPS_CONTRADICT if a row without entries has a
-    !> right-hand side that 0 does not satisfy; FETI_CALLBACK if a function of the host fails or violates its
-    !> requirements (feti_body_operator); FETI_UNSUPPORTED if fixing unknowns were given for a body with
-    !> functions of the host instead of a matrix; FETI_OVERFLOW if the square of a row, or a compliance times
-    !> the largest K_ii, overflows or underflows; FETI_CANCELLED if the host has cancelled.
+    !> body, unknown and pivot or diagonal entry in the error detail; FETI_GAPS_CONTRADICT if a row without
+    !> entries has a right-hand side that 0 does not satisfy; FETI_CALLBACK if a function of the host fails or
+    !> violates its requirements (feti_body_operator); FETI_UNSUPPORTED if fixing unknowns were given for a
+    !> body with functions of the host instead of a matrix; FETI_OVERFLOW if the square of a row, or a
+    !> compliance times the largest K_ii, overflows or underflows; FETI_CANCELLED if the host has cancelled.
     !>
     !> @param[in] p (scalar) the handle
     function feti_setup(p) bind(C, name="feti_setup")
@@ -1973,8 +1979,7 @@ module feti_contact_c
     !> The values are copied and checked like the first ones. The library keeps the symbolic analysis, so the
     !> next setup costs only a numeric factorisation of this body; bit-identical values cost nothing. The
     !> storage is the one of the first call. FETI_STATE if the matrix has not been given, or was given in
-    !> another form. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the
-    !> error detail names the unknown. After a failure the body keeps its previous values.
+    !> another form. After a failure the body keeps its previous values.
     !>
     !> Borrowed values (FETI_BORROW) are not copied: `val` is either the borrowed array, which the host has
     !> rewritten, or another array that replaces it. The values count as changed, also for other bodies that
@@ -1999,9 +2004,7 @@ module feti_contact_c
     !> Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
     !>
     !> The call works like feti_body_values, for a matrix with a separate diagonal. FETI_STATE if the matrix
-    !> has not been given, or was given in another form. FETI_INDEFINITE if a diagonal entry is negative, or
-    !> is 0 in a row with other entries; the error detail names the unknown. After a failure the body keeps
-    !> its previous values.
+    !> has not been given, or was given in another form. After a failure the body keeps its previous values.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] body (scalar) number of the body, from 0
@@ -2026,8 +2029,7 @@ module feti_contact_c
     !>
     !> The matrix is copied and checked like the first one, in the same storage. If all zeros stay zero, the
     !> library keeps the symbolic analysis. FETI_STATE if the matrix has not been given, or was given in
-    !> another form. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the
-    !> error detail names the unknown. After a failure the body keeps its previous matrix.
+    !> another form. After a failure the body keeps its previous matrix.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] body (scalar) number of the body, from 0

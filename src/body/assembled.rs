@@ -29,6 +29,23 @@ impl Assembled {
         Self { pieces, diagonal }
     }
 
+    /// The same K with a metric to which the unknowns that `slight` names in a piece add nothing.
+    pub fn measured_without(
+        self: &Arc<Self>,
+        slight: impl Fn(&Symmetric) -> Result<Vec<bool>>,
+    ) -> Result<Arc<Self>> {
+        let slight = self.pieces.iter().map(|(_, k)| slight(k)).collect::<Result<Vec<_>>>()?;
+        if slight.iter().all(Vec::is_empty) {
+            return Ok(Arc::clone(self));
+        }
+        let mut diagonal = zeros(self.order(), WHAT)?;
+        for ((dofs, k), slight) in self.pieces.iter().zip(&slight) {
+            let stiff = dofs.iter().enumerate().filter(|(i, _)| slight.get(*i) != Some(&true));
+            stiff.for_each(|(i, &dof)| diagonal[dof as usize] += k.diagonal(i));
+        }
+        Ok(Arc::new(Self { pieces: self.pieces.clone(), diagonal }))
+    }
+
     /// Memory for a body of n unknowns in addition to its pieces.
     pub fn room_for(n: usize) -> Result<Vec<f64>> {
         zeros(n, "a stiffness matrix")
@@ -42,14 +59,14 @@ impl Assembled {
         self.diagonal[i]
     }
 
-    /// `D_ii` of the metric for K: `K_ii`, or `without` for a dof without stiffness.
+    /// `D_ii` of the metric for K: `|K_ii|`, or `without` for a dof without stiffness.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
-        Some(self.diagonal[i]).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
+        Some(self.diagonal[i].abs()).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
     }
 
-    /// `max K_ii`
+    /// `max |K_ii|`
     pub fn largest_diagonal(&self) -> f64 {
-        self.diagonal.iter().copied().fold(0.0, f64::max)
+        self.diagonal.iter().fold(0.0, |largest, k| k.abs().max(largest))
     }
 
     /// `y = K x`

@@ -23,7 +23,7 @@ impl Stiffness<'_> {
         }
     }
 
-    /// `D_ii` of the metric for K: `K_ii`, or `without` for a dof without stiffness.
+    /// `D_ii` of the metric for K, or `without` for a dof without stiffness.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
         match self {
             Self::Matrix(k) => k.metric(i, without),
@@ -32,7 +32,7 @@ impl Stiffness<'_> {
         }
     }
 
-    /// `max K_ii`
+    /// `max D_ii`
     pub fn largest_diagonal(&self) -> f64 {
         match self {
             Self::Matrix(k) => k.largest_diagonal(),

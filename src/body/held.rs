@@ -1,6 +1,7 @@
 //! The dofs held for soft motions. One dof for each given motion keeps F of (14) definite while K has only small negative
 //! stiffness along these motions. If the negative stiffness is larger, F is indefinite or nearly so, and the library
-//! holds other or more dofs: each additional dof adds one soft motion, and K is still represented exactly.
+//! holds other or more dofs: each additional dof adds one soft motion, and K is still represented exactly. So it does if F
+//! is singular, as between two soft motions that exchange their work.
 
 use std::sync::Arc;
 
@@ -31,7 +32,7 @@ impl Known {
             };
             let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
             let error = breakdown.refused().unwrap_or_else(missing);
-            if error.kind != Kind::Indefinite || self.null_space.cols >= most {
+            if self.null_space.cols >= most {
                 return Err(error);
             }
             self.hold_also(symbolic.analysis.fastest(&self.k.matrix, self.k.by, breakdown.dof)?)?;
@@ -71,7 +72,7 @@ impl Known {
     }
 
     /// Holds one more dof.
-    fn hold_also(&mut self, dof: usize) -> Result<()> {
+    pub(super) fn hold_also(&mut self, dof: usize) -> Result<()> {
         let mut unit = zeros(self.null_space.rows, "a soft motion")?;
         unit[dof] = 1.0;
         let (mut null_space, mut fixing) = (self.null_space.clone(), self.fixing.clone());

@@ -9,7 +9,7 @@ use crate::body::null_space::{NullSpaceInput, DEPENDENT, ROUNDING as KNOWN};
 use crate::body::pilots::Pilots;
 use crate::body::probe::{probe, Factor};
 use crate::body::spectrum::Doubt;
-use crate::error::Result;
+use crate::error::{Error, Kind, Result};
 use crate::linalg::{Analysis, Cholesky, Matrix, Multiple};
 
 /// The plan if the null space is known before the factorisation.
@@ -96,15 +96,31 @@ impl Known {
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or has further null vectors. For
     /// soft motions it holds other dofs, or more, but not more than `most`, if K requires them.
     pub fn execute(mut self, most: usize) -> Result<Factorised> {
-        let (symbolic, factor, mut further) = self.factorised(most)?;
-        let (mut symbolic, mut inverse) = (symbolic, self.made(factor)?);
+        let (mut symbolic, mut inverse, mut further) = self.held_by(most)?;
         if let Some(better) = self.better(&inverse)? {
             self.hold(inverse.null_space, better)?;
-            let (other, factor, more) = self.factorised(most)?;
-            (symbolic, inverse) = (other, self.made(factor)?);
+            let more;
+            (symbolic, inverse, more) = self.held_by(most)?;
             further += 1 + more;
         }
         Ok(Factorised { inverse, symbolic, further_analyses: further, factorisations: 1 + further })
+    }
+
+    /// K+, its analysis, and how many times further dofs had to be held. A pivot that is only rounding, as beside a
+    /// diagonal entry that is, shows in the probe alone.
+    fn held_by(&mut self, most: usize) -> Result<(Arc<Symbolic>, GeneralizedInverse, usize)> {
+        let mut further = 0;
+        loop {
+            let (symbolic, factor, more) = self.factorised(most)?;
+            further += more;
+            let made = self.made(factor);
+            let is_singular = |error: &&Error| error.kind == Kind::NullSpace && self.null_space.cols < most;
+            match made.as_ref().err().filter(is_singular).and_then(|error| error.place.dof) {
+                Some(dof) => self.hold_also(dof)?,
+                None => return Ok((symbolic, made?, further)),
+            }
+            further += 1;
+        }
     }
 
     /// The motions of which K holds some.

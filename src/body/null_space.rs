@@ -55,7 +55,7 @@ impl NullSpaceInput {
 pub(super) const DEPENDENT: f64 = 1e-10;
 /// Bound of `|A z|` of a unit vector z that is 0 up to rounding, even if its terms are not larger: z of dofs without
 /// stiffness.
-pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Ratio of the largest to the mean error of a null vector.
 const PEAK: f64 = 8.0;
 
@@ -66,7 +66,7 @@ const LARGEST: f64 = 1e150;
 pub trait Products {
     /// The terms to which products with R are relative, in words.
     const TERMS: &'static str;
-    /// `K_ii`, or `without` for a dof without stiffness.
+    /// `D_ii`, or `without` for a dof without stiffness.
     fn metric(&self, i: usize, without: f64) -> f64;
     /// `K X`, and the terms to which its rounding errors are relative.
     fn mul_columns(&self, x: &Matrix) -> Result<(Matrix, Matrix)>;

@@ -25,12 +25,10 @@ pub fn from_split(input: SparseInput<'_>, diag: &[f64], tolerance: f64) -> Resul
 fn from_rows(input: SparseInput<'_>, diag: Option<&[f64]>, tolerance: f64) -> Result<Symmetric> {
     check_order(input.ptr.len() - 1)?;
     let _room = headroom(input.ptr.len() * PER_ROW, "a stiffness matrix")?;
-    let k = match lower_triangle(input, diag, tolerance)? {
-        Some(lower) => lower,
-        None => with_diagonal(lower_of(sorted(input, diag)?, input.storage, tolerance)?)?,
-    };
-    check_diagonal(&k)?;
-    Ok(k)
+    match lower_triangle(input, diag, tolerance)? {
+        Some(lower) => Ok(lower),
+        None => with_diagonal(lower_of(sorted(input, diag)?, input.storage, tolerance)?),
+    }
 }
 
 /// The lower triangle of sorted rows.
@@ -67,9 +65,7 @@ pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f
         let kept = range.map(|j| (j, k[i + ld * j])).filter(|&(j, v)| v != 0.0 || i == j);
         rows.push_row(kept);
     }
-    let k = with_diagonal(lower_of(rows, storage, tolerance).map_err(|e| rename(e, "k"))?)?;
-    check_diagonal(&k)?;
-    Ok(k)
+    with_diagonal(lower_of(rows, storage, tolerance).map_err(|e| rename(e, "k"))?)
 }
 
 /// Checks that columns fit into 32 bits.
@@ -218,7 +214,7 @@ fn with_diagonal(lower: Csr) -> Result<Symmetric> {
 }
 
 /// A dof may have no stiffness at all (a rigid body); a diagonal entry that is negative, or that is zero in a row with
-/// other entries, makes K indefinite.
+/// other entries, makes K indefinite, which only a body with soft motions may be.
 pub fn check_diagonal(k: &Symmetric) -> Result<()> {
     let n = k.order();
     if (0..n).all(|i| k.diagonal(i) > 0.0) {
@@ -309,7 +305,7 @@ mod tests {
     fn a_dof_may_lack_stiffness_but_not_couple_without_it() {
         let rigid = SparseInput { ptr: &[0, 0], col: &[], val: &[], storage: Storage::Full };
         assert_eq!(from_sparse(rigid, 0.0).unwrap().diagonal(0), 0.0);
-        let error = full(&[-1.0, 2.0, -1.0, 0.0]).unwrap_err();
+        let error = check_diagonal(&full(&[-1.0, 2.0, -1.0, 0.0]).unwrap()).unwrap_err();
         assert_eq!((error.kind, error.place.dof), (Kind::Indefinite, Some(1)));
     }
 

@@ -9,7 +9,7 @@
 
 use std::collections::HashMap;
 
-use crate::body::Stiffness;
+use crate::body::{Stiffness, ROUNDING};
 use crate::certificate::grounded::each_entry;
 use crate::constraints::RowSet;
 use crate::error::Result;
@@ -97,7 +97,10 @@ impl Search<'_> {
         for (kind, set) in self.rows.into_iter().enumerate() {
             for i in (0..set.len()).filter(|&i| set.is_finite(i) && (self.holds)(kind, i)) {
                 row.clear();
-                row.extend(set.matrix.row(i).map(|(j, b)| (j, b * b, b * b / self.stiffness[j])));
+                // the rounding of a direction joins nothing
+                let rounding = ROUNDING * set.largest_entry(i);
+                let entries = set.matrix.row(i).filter(|(_, b)| b.abs() > rounding);
+                row.extend(entries.map(|(j, b)| (j, b * b, b * b / self.stiffness[j])));
                 visit(&row, self.unit * set.compliance[i]);
             }
         }

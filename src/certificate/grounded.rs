@@ -20,8 +20,8 @@ pub fn grounded(k: Stiffness) -> Result<Vec<u32>> {
     };
     let couple = |i: usize, j: usize, k_ij: f64| {
         if i != j {
-            neighbours[j] += through(k_ij, diagonal(i));
-            neighbours[i] += through(k_ij, diagonal(j));
+            neighbours[j] += through(k_ij, k.metric(i, 0.0));
+            neighbours[i] += through(k_ij, k.metric(j, 0.0));
         }
     };
     if !each_entry(k, couple) {

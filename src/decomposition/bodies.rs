@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::body::{check_diagonal, Body};
+use crate::body::Body;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Symmetric;
 use crate::mesh::{Mesh, Piece};
 use crate::model::{GivenBody, Joint, Model, Part, Parts};
 use crate::platform::memory::{copied, filled, reserved, zeros};
 
-use super::components::{Component, Components, Connected};
+use super::components::{slight, Component, Components, Connected};
 use super::copies::Copies;
 
 const WHAT: &str = "the parts of bodies";
@@ -25,7 +25,8 @@ pub fn parts(
     all.starts.push(0);
     for (body, given) in host.bodies.iter().enumerate() {
         all.first.push(bodies.len());
-        all.assembled.push(given.body.assembled.clone());
+        let assembled = given.body.assembled.as_ref().map(|k| k.measured_without(slight));
+        all.assembled.push(assembled.transpose().map_err(|e| e.body(body))?);
         let mut split = Split { given, body, held, first: host.offsets[body], loose: &mut all.loose };
         let pieces = given.mesh.as_ref().and_then(Mesh::pieces).filter(|_| given.body.assembled.is_some());
         let made = match (pieces, connected.components(body), given.body.stiffness.as_deref()) {
@@ -142,10 +143,6 @@ impl Split<'_> {
     /// stiffness all copies have equal weights.
     fn piece(&mut self, number: usize, piece: &Piece, copies: &[u32]) -> Result<Vec<(Body, Part)>> {
         let Piece { dofs, stiffness } = piece;
-        check_diagonal(stiffness).map_err(|e| match e.place.dof {
-            Some(i) => e.dof(dofs[i] as usize),
-            None => e,
-        })?;
         let Some(components) = Components::of(stiffness)? else {
             return Ok(vec![self.of_piece(number, Arc::clone(dofs), Arc::clone(stiffness), copies)?]);
         };

@@ -1,9 +1,11 @@
-//! The connected components of stiffness matrices. No entry of K joins two of them, so each is a body of its own.
+//! The connected components of stiffness matrices. No entry of K joins two of them, so each is a body of its own; only
+//! the rounding of directions, which is no stiffness, is left out.
 
 use std::sync::Arc;
 
+use crate::body::ROUNDING;
 use crate::error::Result;
-use crate::linalg::graph::components;
+use crate::linalg::graph::joined;
 use crate::linalg::Symmetric;
 use crate::model::Model;
 use crate::platform::memory::{filled, headroom, reserved};
@@ -13,11 +15,13 @@ const WHAT: &str = "the connected parts of a body";
 /// Bytes of labels and lists, per unknown.
 const PER_DOF: usize = 3 * size_of::<usize>();
 
-/// A matrix of several components.
+/// The components of a matrix.
 pub struct Components {
     /// Component of every unknown, numbered by first unknowns.
-    of: Vec<usize>,
+    pub of: Vec<usize>,
     pub count: usize,
+    /// Unknowns with a stiffness that is only rounding, each a component without stiffness; empty if there are none.
+    slight: Vec<bool>,
 }
 
 /// A component: its unknowns within the matrix, ascending, and its block.
@@ -29,16 +33,32 @@ pub struct Component {
 impl Components {
     /// None if the matrix is connected.
     pub fn of(k: &Symmetric) -> Result<Option<Self>> {
+        Self::all(k).map(|found| (found.count > 1).then_some(found))
+    }
+
+    /// Entries that are 0 connect nothing.
+    pub fn all(k: &Symmetric) -> Result<Self> {
         let _room = headroom(k.order() * PER_DOF, WHAT)?;
-        let (of, count) = components(k);
-        Ok((count > 1).then_some(Self { of, count }))
+        let slight = slight(k)?;
+        let is_own = |i: usize| slight.get(i) == Some(&true);
+        let row = |i: usize| {
+            let joined = k.lower_row(i).filter(move |&(j, v)| v != 0.0 && !is_own(i) && !is_own(j));
+            std::iter::once(i).chain(joined.map(|entry| entry.0))
+        };
+        let (of, count) = joined(k.order(), (0..k.order()).map(row));
+        Ok(Self { of, count, slight })
+    }
+
+    fn is_slight(&self, i: usize) -> bool {
+        self.slight.get(i) == Some(&true)
     }
 
     /// Unknowns without any stiffness, ascending.
     pub fn empty<'a>(&'a self, k: &'a Symmetric) -> Result<impl Iterator<Item = usize> + 'a> {
         let mut members = filled(self.count, 0u32, WHAT)?;
         self.of.iter().for_each(|&c| members[c] += 1);
-        Ok((0..self.of.len()).filter(move |&i| members[self.of[i]] == 1 && k.diagonal(i) == 0.0))
+        let is_stiff = |i: usize| k.diagonal(i) != 0.0 && !self.is_slight(i);
+        Ok((0..self.of.len()).filter(move |&i| members[self.of[i]] == 1 && !is_stiff(i)))
     }
 
     /// The components of k, except those of which `leave_out` names the first unknown.
@@ -63,11 +83,46 @@ impl Components {
         for i in (0..n).filter(|&i| left_out[of[i]] == Some(false)) {
             let (dofs, matrix) = &mut blocks[of[i]];
             dofs.push(i as u32);
-            matrix.push_row(own(i).map(|(j, v)| (place[j] as usize, v)));
+            let given = if self.is_slight(i) { 0.0 } else { 1.0 };
+            matrix.push_row(own(i).map(|(j, v)| (place[j] as usize, given * v)));
         }
         let kept = blocks.into_iter().filter(|(dofs, _)| !dofs.is_empty());
         Ok(kept.map(|(dofs, stiffness): (Vec<u32>, _)| Component { dofs: dofs.into(), stiffness }).collect())
     }
+}
+
+/// Unknowns that K resists only by the rounding of directions, as a bar along (6e-17, 1) resists what moves across it,
+/// with 4e-33: `K_ij` is rounding of `K_jj`, `K_ii` is rounding of `K_ij`, and K need not be indefinite for it, as it is
+/// with a Lagrange multiplier. No other entry may join such an unknown to one that has stiffness. Empty if there are
+/// none.
+pub fn slight(k: &Symmetric) -> Result<Vec<bool>> {
+    let entries = || {
+        let row = |i: usize| k.lower_row(i).filter(move |&(j, v)| j < i && v != 0.0);
+        (0..k.order()).flat_map(move |i| row(i).map(move |(j, v)| (i, j, v.abs())))
+    };
+    let is_noticed = |v: f64, j: usize| v > ROUNDING * k.diagonal(j);
+    let mut slight = Vec::new();
+    for (a, b, v) in entries() {
+        for (i, j) in [(a, b), (b, a)] {
+            let [own, other] = [i, j].map(|of| k.diagonal(of));
+            if 0.0 < own && own <= ROUNDING * v && 0.0 < other && v / other <= 2.0 * own / v {
+                if slight.is_empty() {
+                    slight = filled(k.order(), false, WHAT)?;
+                }
+                slight[i] = true;
+            }
+        }
+    }
+    if slight.is_empty() {
+        return Ok(slight);
+    }
+    let joins = |i: usize, j: usize, v: f64| !slight[i] || is_noticed(v, j);
+    let joining = entries().filter(|&(i, j, v)| joins(i, j, v) && joins(j, i, v));
+    let (of, count) = joined(k.order(), joining.map(|(i, j, _)| [i, j].into_iter()));
+    let mut are_slight = filled(count, true, WHAT)?;
+    of.iter().zip(&slight).for_each(|(&c, slight)| are_slight[c] &= *slight);
+    slight.iter_mut().zip(of).for_each(|(slight, c)| *slight = are_slight[c]);
+    Ok(slight)
 }
 
 /// The components of all bodies that are given by one matrix, each found once for every K.

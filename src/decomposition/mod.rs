@@ -16,7 +16,7 @@ use crate::model::{GivenBody, Model, Revisions};
 
 pub use back::of_host;
 use bodies::{loads, parts, touched};
-pub use components::Connected;
+pub use components::{Components, Connected};
 use copies::Copies;
 use rows::rows;
 

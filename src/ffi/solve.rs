@@ -13,8 +13,8 @@ use crate::solver::{Candidate, Certificate, Problem, Report, Sizes};
 /// data that was given is kept and can be corrected.
 ///
 /// FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of a body is not the one
-/// that was given, or cannot be found; FETI_INDEFINITE if a matrix is indefinite, with body, unknown and pivot in the
-/// error detail; FETI_GAPS_CONTRADICT if a row without entries has a right-hand side that 0 does not satisfy;
+/// that was given, or cannot be found; FETI_INDEFINITE if a matrix is indefinite, with body, unknown and pivot or
+/// diagonal entry in the error detail; FETI_GAPS_CONTRADICT if a row without entries has a right-hand side that 0 does not satisfy;
 /// FETI_CALLBACK if a function of the host fails or violates its requirements (feti_body_operator); FETI_UNSUPPORTED if
 /// fixing unknowns were given for a body with functions of the host instead of a matrix; FETI_OVERFLOW if the square of a
 /// row, or a compliance times the largest K_ii, overflows or underflows; FETI_CANCELLED if the host has cancelled.

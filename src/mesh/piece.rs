@@ -45,7 +45,7 @@ impl Piece {
 
     /// A zero matrix with this pattern; the present matrix may still be in use elsewhere.
     pub fn cleared(&self) -> Result<Arc<Symmetric>> {
-        let Symmetric { ptr, col, val } = &*self.stiffness;
+        let Symmetric { ptr, col, val, .. } = &*self.stiffness;
         let (ptr, col) = (copied(ptr, WHAT)?, copied(col, WHAT)?);
         Ok(Arc::new(Symmetric::new(ptr, col, filled(val.len(), 0.0, WHAT)?)))
     }

@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::body::{
-    check_diagonal, same_vectors, Body, Coordinates, HostFunctions, HostOperator, Modes, NullSpaceInput,
-};
+use crate::body::{same_vectors, Body, Coordinates, HostFunctions, HostOperator, Modes, NullSpaceInput};
 use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
@@ -159,9 +157,6 @@ impl Model {
             if let Some(element) = given.mesh.as_ref().and_then(Mesh::first_missing) {
                 let what = "the matrix of this element has not been given";
                 return Err(Error::new(Kind::State, what).body(p).element(element));
-            }
-            if let Some(k) = body.stiffness.as_ref().filter(|_| given.mesh.is_some()) {
-                check_diagonal(k).map_err(|error| error.body(p))?;
             }
             if body.k().is_none() {
                 return refused(p, "the stiffness matrix has not been given");

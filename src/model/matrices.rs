@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::body::{
-    check_diagonal, check_finite, from_borrowed, from_dense, from_sparse, from_split, same_bits, same_matrix,
-    same_pattern, Columns, Form, Places, SparseInput, Storage,
+    check_finite, from_borrowed, from_dense, from_sparse, from_split, same_bits, same_matrix, same_pattern,
+    Columns, Form, Places, SparseInput, Storage,
 };
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Borrowed, Symmetric};
@@ -124,11 +124,7 @@ impl Model {
         let new = self.new_values(body, diag, val).map_err(|e| e.body(body))?;
         let stiffness = self.bodies[body].body.stiffness.as_mut();
         let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
-        let old = std::mem::replace(&mut k.val, new.into());
-        if let Err(error) = check_diagonal(k) {
-            k.val = old;
-            return Err(error.body(body));
-        }
+        let old = k.replace_values(new);
         let unchanged = same_bits(&old, &k.val);
         self.change(body, Change::unless(unchanged, Change::Values)).map(drop)
     }
@@ -145,12 +141,12 @@ impl Model {
         self.places(body, false)?.check_number(val.len()).map_err(|e| e.body(body))?;
         let stiffness = self.bodies[body].body.stiffness.as_mut();
         let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
-        let old = std::mem::replace(&mut k.val, val.into());
+        let old = k.replace_values(val);
         let row_of = |at: usize| k.ptr.partition_point(|&start| start <= at) - 1;
-        let checked = check_finite(&k.val, "val", row_of).and_then(|()| check_diagonal(k));
+        let checked = check_finite(&k.val, "val", row_of);
         let (array, rewritten) = (k.val.as_ptr(), k.val.as_ptr() == old.as_ptr());
         if checked.is_err() {
-            k.val = old;
+            k.replace_values(old);
         }
         let borrows = |p: &usize| {
             let k = self.bodies[*p].body.stiffness.as_ref();

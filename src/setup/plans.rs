@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::body::{Body, Digits, GeneralizedInverse, Modes, Pilots, Plan};
+use crate::body::{check_diagonal, Body, Digits, GeneralizedInverse, Modes, Pilots, Plan};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
 use crate::model::Model;
@@ -51,10 +51,13 @@ pub(super) fn weights(model: &Model, bodies: &[usize]) -> Vec<f64> {
     bodies.iter().map(|p| entries(p) as f64).collect()
 }
 
-/// Null space and fixing dofs of a body, found before any factorisation.
+/// Null space and fixing dofs of a body, found before any factorisation. Only now is it known whether its motions are soft.
 fn plan(body: &Body, pilots: Option<Pilots>, tolerance: f64, is_piece: bool) -> Result<Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
     let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
+    if !body.has_soft_motions() {
+        check_diagonal(&matrix)?;
+    }
     let k = Multiple { matrix, by: 1.0 / body.unit() };
     match pilots {
         Some(pilots) if pilots.are_all() => Plan::of_pilots(k, pilots),

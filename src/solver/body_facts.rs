@@ -1,8 +1,8 @@
 //! Information about one body.
 
 use crate::body::{Assembled, Doubt, Modes};
+use crate::decomposition::Components;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::graph;
 use crate::linalg::Symmetric;
 use crate::mesh::Mesh;
 use crate::platform::memory::{filled, headroom, zeros};
@@ -79,8 +79,8 @@ impl Problem {
             return Ok(k.components());
         }
         let k = given.stiffness.as_ref().ok_or_else(missing)?;
-        let _room = headroom(k.order() * PER_DOF, "the connected parts of a body")?;
-        Ok(graph::components(k))
+        let Components { of, count, .. } = Components::all(k)?;
+        Ok((of, count))
     }
 
     pub fn body_facts(&self, body: usize) -> Result<BodyFacts> {

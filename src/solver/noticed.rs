@@ -74,15 +74,26 @@ pub fn loose(log: &Log, host: &Model, parts: Option<&Parts>) -> Result<()> {
     let mut left = loose.iter().peekable();
     while let Some(&first) = left.next() {
         let body = host.offsets[1..].partition_point(|end| *end <= first);
-        let (dof, mut count) = (first - host.offsets[body], 1);
-        while left.next_if(|j| **j < host.offsets[body + 1]).is_some() {
-            count += 1;
+        let stiffness =
+            |j: usize| host.bodies[body].body.k().map_or(0.0, |k| k.metric(j - host.offsets[body], 0.0));
+        let (dof, mut count, mut slight) = (first - host.offsets[body], 1, stiffness(first));
+        while let Some(&j) = left.next_if(|j| **j < host.offsets[body + 1]) {
+            (count, slight) = (count + 1, slight.max(stiffness(j)));
         }
         let base = host.settings.index_base;
         let [body, dof] = [body, dof].map(|k| k as i64 + base);
         let unknowns = if count == 1 { "1 unknown has".to_owned() } else { format!("{count} unknowns have") };
+        let left_out = match slight {
+            0.0 => String::new(),
+            most => {
+                format!("; at most {most:.1e}, which is left out, is rounding of the stiffness of neighbours")
+            }
+        };
         let what = || {
-            format!("note: body {body}: {unknowns} no stiffness, no row and no load, and do not move; the first is {dof}")
+            format!(
+                "note: body {body}: {unknowns} no stiffness, no row and no load, and do not move; the first is \
+                 {dof}{left_out}"
+            )
         };
         log.say(LogLevel::Result, what)?;
     }

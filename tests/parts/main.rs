@@ -1,5 +1,6 @@
 //! One K for several bodies: every connected component of a matrix is solved as a body of its own.
 
+mod directions;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod loose;

@@ -3,12 +3,14 @@
 //!
 //! | module | claims |
 //! |---|---|
+//! | [`column`] | diagonal entries of K that are negative, or 0 beside others: a rigid column with its load on top |
 //! | [`coordinates`] | rigid motions of coordinates, with and without supports, resisted or driven |
 //! | [`driven`] | negative stiffness of rho from .007 to .9, and of no minimum |
 //! | [`random`] | driven problems against all their stationary points |
 //! | [`units`] | units of forces and lengths, problem files |
 //! | [`weak`] | springs and rounding of 1e-12 to 1e-4 of K: forces, products, units, threads |
 
+mod column;
 mod coordinates;
 mod driven;
 #[path = "../support/face.rs"]

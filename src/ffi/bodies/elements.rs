@@ -271,7 +271,7 @@ fn block(
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | number of held unknowns to read: 0 to n - 1; at most the number of unknowns of the body, or of its held ones |
+/// | `n` | in | scalar | length of `r`: held unknowns 0 to n - 1 are read, also if the body has more or fewer; at most the number of its unknowns, or of its held ones |
 /// | `r` | out | n | force; 0 for a held unknown that no element has |
 ///
 /// # Safety

@@ -12,13 +12,13 @@ use crate::solver::Modes;
 /// The basis is copied; another call replaces it. If you do not call this function, the coordinates of the unknowns give
 /// candidates (feti_body_coordinates); without coordinates the library finds the null space from K. feti_setup checks
 /// that `K R = 0` holds. With FETI_SOFT this equation need not hold: weak springs, rounding of the entries of K and
-/// geometric stiffness may give the motions a positive or negative stiffness. The columns then only choose the fixing unknowns; the library
-/// computes the motions and their stiffness from K and takes them into account exactly. If K is still indefinite with
-/// these unknowns fixed, the library fixes up to six more, each with its own column in feti_body_null_space_get.
-/// FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator); FETI_INDEFINITE from feti_setup if K has
-/// negative stiffness along more motions than that, and from feti_solve if the contact does not restrain a motion with
-/// negative stiffness. After a failure
-/// the body keeps its previous basis.
+/// geometric stiffness may give the motions a positive or negative stiffness, and diagonal entries of K may be negative.
+/// The columns then only choose the fixing unknowns; the library computes the motions and their stiffness from K and takes
+/// them into account exactly. If K is still indefinite or singular with these unknowns fixed, the library fixes up to six
+/// more, each with its own column in feti_body_null_space_get. FETI_UNSUPPORTED from feti_setup if the host provides K+
+/// (feti_body_operator); FETI_INDEFINITE from feti_setup if K has negative stiffness along more motions than that, and
+/// from feti_solve if the contact does not restrain a motion with negative stiffness. After a failure the body keeps its
+/// previous basis.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -12,8 +12,8 @@ use crate::solver::{Columns, Problem, SparseInput, Storage};
 ///
 /// The library copies the matrix; another call replaces pattern and values. The columns of a row may come in any order,
 /// but none twice. With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and
-/// K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the error detail names the
-/// unknown. After a failure the body keeps its previous matrix.
+/// K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the motions
+/// of the body are FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
 ///
 /// With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is FETI_LOWER,
 /// columns ascend and every row ends with its diagonal entry. Otherwise it copies everything (see `borrowed` of
@@ -57,8 +57,8 @@ pub unsafe extern "C" fn feti_body_stiffness_i32(
 ///
 /// The library copies the matrix; another call replaces pattern and values. The columns of a row may come in any order,
 /// but none twice. With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and
-/// K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the error detail names the
-/// unknown. After a failure the body keeps its previous matrix.
+/// K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the motions
+/// of the body are FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
 ///
 /// With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is FETI_LOWER,
 /// columns ascend and every row ends with its diagonal entry. Otherwise it copies everything (see `borrowed` of
@@ -102,8 +102,9 @@ pub unsafe extern "C" fn feti_body_stiffness_i64(
 ///
 /// For codes that store the diagonal in a separate array. The library copies the matrix; another call replaces pattern
 /// and values. The columns of a row may come in any order, but none twice. With FETI_FULL, K must be symmetric within
-/// option symmetry_tolerance; the library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is
-/// 0 in a row with other entries; the error detail names the unknown. After a failure the body keeps its previous matrix.
+/// option symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0 in a row with
+/// other entries, is refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a
+/// failure the body keeps its previous matrix.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -144,8 +145,9 @@ pub unsafe extern "C" fn feti_body_stiffness_split_i32(
 ///
 /// For codes that store the diagonal in a separate array. The library copies the matrix; another call replaces pattern
 /// and values. The columns of a row may come in any order, but none twice. With FETI_FULL, K must be symmetric within
-/// option symmetry_tolerance; the library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is
-/// 0 in a row with other entries; the error detail names the unknown. After a failure the body keeps its previous matrix.
+/// option symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0 in a row with
+/// other entries, is refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a
+/// failure the body keeps its previous matrix.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -248,8 +250,8 @@ impl<I: Index> SparseMatrix<I> {
 /// Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
 ///
 /// The library copies the matrix; another call replaces it. With FETI_LOWER and FETI_UPPER the other triangle is not
-/// read. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the error detail names the
-/// unknown. After a failure the body keeps its previous matrix.
+/// read. A diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the motions
+/// of the body are FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

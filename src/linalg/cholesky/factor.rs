@@ -32,7 +32,7 @@ pub struct Cholesky<T: Entry = f64> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Breakdown {
     pub dof: usize,
-    /// The pivot divided by the diagonal entry of K it came from.
+    /// The pivot divided by `D_ii` of the metric, that is by the diagonal entry of K it came from if K is semidefinite.
     pub relative_pivot: f64,
 }
 
@@ -108,7 +108,8 @@ impl Analysis {
         Ok(match self.before(matrix, by, at)? {
             Ok((column, x)) => {
                 let explained: f64 = (0..x.len()).map(|i| x[i] * column[i]).sum();
-                let relative_pivot = if diagonal > 0.0 { (diagonal - explained) / diagonal } else { 0.0 };
+                let size = by * matrix.metric(dof, 0.0);
+                let relative_pivot = if size > 0.0 { (diagonal - explained) / size } else { 0.0 };
                 Breakdown { dof, relative_pivot }
             }
             Err(earlier) => earlier,
@@ -120,7 +121,7 @@ impl Analysis {
     pub fn fastest(&self, matrix: &Symmetric, by: f64, dof: usize) -> Result<usize> {
         let Ok((_, mut x)) = self.before(matrix, by, self.position[dof])? else { return Ok(dof) };
         x[dof] = 1.0;
-        let far = |i: usize| matrix.diagonal(i) * x[i] * x[i];
+        let far = |i: usize| matrix.metric(i, 1.0 / by) * x[i] * x[i];
         Ok((0..x.len()).fold(dof, |best, i| if far(i) > far(best) { i } else { best }))
     }
 

@@ -1,7 +1,7 @@
 //! Symmetric sparse matrices: the lower triangle by rows; and a multiple of such a matrix without a copy.
 
 use std::array;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
@@ -19,11 +19,19 @@ pub struct Symmetric {
     /// 32 bits: a matrix has less than 2^32 rows.
     pub col: Array<u32>,
     pub val: Array<f64>,
+    /// The metric of a matrix that is no semidefinite one by some entry; of others it is the diagonal, and this is empty.
+    raised: OnceLock<Vec<f64>>,
 }
 
 impl Symmetric {
     pub fn new(ptr: Vec<usize>, col: impl Into<Array<u32>>, val: impl Into<Array<f64>>) -> Self {
-        Self { ptr, col: col.into(), val: val.into() }
+        Self { ptr, col: col.into(), val: val.into(), raised: OnceLock::new() }
+    }
+
+    /// Replaces the values, and returns the old ones.
+    pub fn replace_values(&mut self, val: impl Into<Array<f64>>) -> Array<f64> {
+        self.raised = OnceLock::new();
+        std::mem::replace(&mut self.val, val.into())
     }
 
     /// A matrix without rows.
@@ -63,9 +71,30 @@ impl Symmetric {
         self.val[self.ptr[i + 1] - 1]
     }
 
-    /// `D_ii` of the metric for K: `K_ii`, or `without` for a dof without stiffness.
+    /// `D_ii` of the metric for K: `K_ii`, or `without` for a dof without stiffness. For soft motions, which may leave 0 or
+    /// less on the diagonal, `|K_ii|`, but no less than `K_ij^2 <= 4 D_ii D_jj` requires.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
-        Some(self.diagonal(i)).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
+        let raised = self.raised.get_or_init(|| self.raised()).get(i);
+        let value = raised.copied().unwrap_or_else(|| self.diagonal(i).abs());
+        Some(value).filter(|value| *value > 0.0).unwrap_or(without)
+    }
+
+    fn raised(&self) -> Vec<f64> {
+        let own = |i: usize| self.diagonal(i).abs();
+        let mut raised = Vec::new();
+        for i in 0..self.order() {
+            for (j, v) in self.lower_row(i).map(|(j, v)| (j, v.abs())).filter(|entry| entry.0 < i) {
+                let (low, high) = (own(i).min(own(j)), own(i).max(own(j)));
+                if v > 2.0 * low && v * (v / high) > 4.0 * low {
+                    if raised.is_empty() {
+                        raised.extend((0..self.order()).map(own));
+                    }
+                    raised[i] = raised[i].max(v * (v / own(j)).min(1.0));
+                    raised[j] = raised[j].max(v * (v / own(i)).min(1.0));
+                }
+            }
+        }
+        raised
     }
 
     /// Bytes that the library keeps for the matrix.
@@ -183,9 +212,9 @@ impl Symmetric {
         }
     }
 
-    /// `max K_ii`
+    /// `max D_ii` of the metric, `max K_ii` without soft motions.
     pub fn largest_diagonal(&self) -> f64 {
-        (0..self.order()).map(|i| self.diagonal(i)).fold(0.0, f64::max)
+        (0..self.order()).map(|i| self.metric(i, 0.0)).fold(0.0, f64::max)
     }
 }
 
@@ -229,7 +258,7 @@ impl Multiple {
 
     /// The metric of the multiple; `without` is not multiplied.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
-        Some(self.by * self.matrix.diagonal(i)).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
+        Some(self.by * self.matrix.metric(i, 0.0)).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
     }
 
     /// Square roots of the metric, 1 for a dof without stiffness.

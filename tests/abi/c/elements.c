@@ -292,6 +292,9 @@ static void not_of_a_cut_body(void)
     EXPECT(FETI_STATE, feti_dual_rhs(p, 1, y));
     EXPECT(FETI_STATE, feti_body_held_forces(p, POST, 1, y));
     (void)solved(p, 1);
+    y[1] = 7.0;
+    OK(feti_body_held_forces(p, POST, 1, y));
+    CHECK(y[0] > 0.0 && y[1] == 7.0, "of one force %g %g were written", y[0], y[1]);
     OK(feti_body_held_forces(p, POST, 3, y));
     CHECK(y[0] > 0.0 && y[1] == 0.0 && y[2] == 0.0, "held forces %g %g %g", y[0], y[1], y[2]);
     OK(feti_body_held_forces(p, BAR, 0, NULL));

@@ -269,10 +269,12 @@ static void wrong_arguments(void)
     val[1] = 0.25;
     EXPECT(FETI_ARGUMENT - 4, feti_body_values(p, 0, 7, val));
     check_last_error(p, &(expectation){ FETI_ARGUMENT - 4, 0, 0, 1, ANY, "feti_body_values", "not symmetric" });
+    check_step(p, FIRST, before, 0, 0, "after refused values");
     values_of(&WAYS[4], SECOND, val);
     val[6] = -1.0;
-    EXPECT(FETI_INDEFINITE, feti_body_values(p, 0, 7, val));
-    check_step(p, FIRST, before, 0, 0, "after refused values");
+    OK(feti_body_values(p, 0, 7, val));
+    EXPECT(FETI_INDEFINITE, feti_solve(p, NULL));
+    check_last_error(p, &(expectation){ FETI_INDEFINITE, 0, ANY, ANY, ANY, "feti_solve", "diagonal entry" });
 
     bar(SECOND, k);
     MUST(feti_body_stiffness_dense(p, 0, N, k, N, FETI_FULL, FETI_COPY));
