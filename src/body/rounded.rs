@@ -10,7 +10,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, weighted_norm};
-use crate::linalg::{Cholesky, Csr, Matrix, Multiple, Packed};
+use crate::linalg::{Cholesky, Csr, Multiple, Packed};
 use crate::platform::interrupt;
 use crate::platform::memory::{copied, zeros};
 use crate::platform::slabs::Slabs;
