@@ -1598,9 +1598,9 @@ typedef struct feti_info {
    */
   int64_t columns_computed;
   /**
-   * Columns that were reused after a change of rows or bodies since the problem was created; on a
-   * body with up to 64 rows they are computed again along with the new ones, for the bits of a new
-   * problem.
+   * Columns that were reused after a change of rows or bodies since the problem was created: those
+   * of bodies whose rows are unchanged, and, on bodies given as functions, those of rows that are
+   * unchanged.
    */
   int64_t columns_kept;
   /**

@@ -1529,8 +1529,8 @@ module feti_contact_c
     !> Columns of the dual operators of the bodies (one column for each body that a row touches) computed
     !> since the problem was created.
     integer(c_int64_t) :: columns_computed
-    !> Columns that were reused after a change of rows or bodies since the problem was created; on a body with
-    !> up to 64 rows they are computed again along with the new ones, for the bits of a new problem.
+    !> Columns that were reused after a change of rows or bodies since the problem was created: those of
+    !> bodies whose rows are unchanged, and, on bodies given as functions, those of rows that are unchanged.
     integer(c_int64_t) :: columns_kept
     !> Bodies whose dual operator is assembled (option dual_operator).
     integer(c_int64_t) :: explicit_operators

@@ -142,15 +142,6 @@ impl Carried {
         form.add_lower(&(0..m).collect::<Vec<_>>(), &gram.data);
         Ok(())
     }
-
-    /// Subtracts the columns `which` of `B C C'B'` from those of `B K+ B'`.
-    pub fn take_from_columns(&self, rows: &Csr, which: &[usize], columns: &mut Matrix) -> Result<()> {
-        let images = self.images(rows)?;
-        for (at, &j) in which.iter().enumerate() {
-            (0..images.cols).for_each(|k| axpy(-images.get(j, k), images.col(k), columns.col_mut(at)));
-        }
-        Ok(())
-    }
 }
 
 /// Multiplies row i by `by(i)`.
@@ -268,16 +259,12 @@ mod tests {
             rows.push_row([(i, v[0]), (i + 3, v[1]), (2 * n - 1 - i, v[2])]);
         }
         let form = inverse.inverse_form(&rows).unwrap();
-        let columns = inverse.inverse_columns(&rows, &[1, 4]).unwrap();
         for j in 0..5 {
             let (mut b, mut x) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
             rows.row(j).for_each(|(dof, v)| b[dof] = v);
             inverse.apply(&b, &mut x).unwrap();
             for i in 0..5 {
                 assert!((rows.row_dot(i, &x) - form.get(i, j)).abs() < 1e-13);
-            }
-            if let Some(at) = [1, 4].iter().position(|which| *which == j) {
-                assert!((0..5).all(|i| (rows.row_dot(i, &x) - columns.get(i, at)).abs() < 1e-13));
             }
         }
     }

@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use crate::body::carried::{self, Carried, Motions};
+use crate::body::host::HostMultiple;
 use crate::body::misfit::Misfit;
 use crate::body::null_space::ROUNDING as KNOWN;
 use crate::body::pilots::Pilots;
@@ -13,7 +14,7 @@ use crate::body::rounded::Rounded;
 use crate::body::soft::{known_to_entries, soft_motions};
 use crate::body::spectrum::Doubt;
 use crate::error::Result;
-use crate::linalg::cholesky::{inverse_columns, inverse_form};
+use crate::linalg::cholesky::inverse_form;
 use crate::linalg::{Analysis, Csr, Matrix, Multiple, Packed};
 use crate::platform::slabs::Slabs;
 
@@ -172,7 +173,7 @@ impl GeneralizedInverse {
 
     /// It must be applied on the thread that calls the library.
     pub fn on_caller(&self) -> bool {
-        matches!(&self.factor, Factor::Host(host) if host.operator.on_caller())
+        self.host().is_some_and(|host| host.operator.on_caller())
     }
 
     /// Address of its factor: equal for all bodies that share the factor.
@@ -184,15 +185,12 @@ impl GeneralizedInverse {
         }
     }
 
-    /// The columns `which` of `B K+ B'`, m x `which.len()`.
-    pub fn inverse_columns(&self, rows: &Csr, which: &[usize]) -> Result<Matrix> {
-        let mut columns = match &self.factor {
-            Factor::Own(factor) => inverse_columns(factor, rows, which)?,
-            Factor::Rounded(rounded) => rounded.inverse_columns(rows, which)?,
-            Factor::Host(host) => host.inverse_columns(rows, which)?,
-        };
-        self.carried.iter().try_for_each(|carried| carried.take_from_columns(rows, which, &mut columns))?;
-        Ok(columns)
+    /// The functions of the host, if they give K+.
+    pub fn host(&self) -> Option<&HostMultiple> {
+        match &self.factor {
+            Factor::Host(host) => Some(host),
+            Factor::Own(_) | Factor::Rounded(_) => None,
+        }
     }
 
     /// `B K+ B'` for the rows B (m x n) of this body.

@@ -170,12 +170,12 @@ fn norm_of(x: Vec<f64>) -> f64 {
     weighted_norm(&x, |_| 1.0)
 }
 
-/// Equilibrium and balance of body p; adds its part of the energies.
+/// Equilibrium and balance of body p, `lost` by the strain that rounding excuses; adds its part of the energies.
 pub(super) fn judge(
     field: &Field,
     forces: &Forces,
     p: usize,
-    certificate: &mut Certificate,
+    (certificate, lost): (&mut Certificate, &mut Entry),
     energies: &mut Energies,
 ) -> Result<()> {
     let (range, limit) = (field.range(p), field.data.limit);
@@ -183,13 +183,13 @@ pub(super) fn judge(
     field.data.bodies[p].stiffness.mul_with_terms(&field.answer.u[range], &mut strain, &mut terms)?;
     let shares = [
         equilibrium(field, forces, p, (&strain, &terms)),
-        excused(field, forces, p, (&strain, &terms)),
         cancelled(field, forces, p, (&strain, &terms)),
         grounded(field, p, (&strain, &terms)),
     ];
     for share in shares {
         certificate.equilibrium.replace_if_worse(Entry::new(share, limit, Some(p)));
     }
+    lost.replace_if_worse(Entry::new(excused(field, forces, p, (&strain, &terms)), limit, Some(p)));
     certificate.balance.replace_if_worse(Entry::new(balance(field, forces, p)?, limit, Some(p)));
     energies.add_body(field, p, (&strain, &terms));
     Ok(())

@@ -147,6 +147,8 @@ impl Response for Unasked {
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
     pub certificate: Certificate,
+    /// Nothing fails but that a body has moved so far that its strain is lost in the rounding of its displacement.
+    pub travelled: bool,
     /// One per body.
     pub bodies: Vec<BodyJudgement>,
     /// One per contact row.
@@ -202,10 +204,11 @@ pub fn certify(data: &Data, answer: Candidate, response: &mut dyn Response) -> R
     let field = Field::new(data, answer)?;
     let deformation = Deformation::new(&field)?;
     let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };
+    let mut lost = Entry::default();
     let forces = Forces::new(&field, &deformation);
     let (mut rows, mut energies) = (Measured::new(&field, &deformation, &forces), Energies::default());
     for p in 0..data.bodies.len() {
-        forces::judge(&field, &forces, p, &mut certificate, &mut energies)?;
+        forces::judge(&field, &forces, p, (&mut certificate, &mut lost), &mut energies)?;
     }
     energies.add_rows(&field);
     energies.add_slips(rows.dissipated());
@@ -215,11 +218,14 @@ pub fn certify(data: &Data, answer: Candidate, response: &mut dyn Response) -> R
     if certificate.only_motions_fail() {
         excuses::by_rounding(&field, &forces, &energies, &mut rows, response, &mut certificate)?;
     }
+    let travelled = certificate.passed() && lost.ratio > 1.0;
+    certificate.equilibrium.replace_if_worse(lost);
     let bodies = rows.force_errors(&field);
     let (length, leverage) = (rows.length(&field), forces.leverage);
     let unevenness = rows.unevenness();
     let nodes = rows.states();
-    Ok(Judgement { certificate, bodies, contact: rows.limits(), nodes, length, leverage, unevenness })
+    let contact = rows.limits();
+    Ok(Judgement { certificate, travelled, bodies, contact, nodes, length, leverage, unevenness })
 }
 
 /// `(x)_+`; NaN stays NaN.

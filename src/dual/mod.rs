@@ -109,7 +109,7 @@ impl Draft {
         let mut first = 0;
         for (part, (rows, matrix)) in parts.into_iter().zip(local) {
             let (multiples, own) = Multiples::of(&matrix);
-            let reuse = (!part.implicit).then(|| Reuse::of(part.kept, &own));
+            let reuse = (!part.implicit).then(|| Reuse::of(part.kept, &part.kplus, &own));
             distinct.push((own, reuse));
             let modes = first..first + part.kplus.null_space.cols;
             first = modes.end;

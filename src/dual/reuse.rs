@@ -1,28 +1,18 @@
-//! Dual operators for new rows, made from previous ones: entries F_p(i, j) of two rows that body p already had are kept.
+//! Dual operators for new rows, made from previous ones: kept for the same rows. Where K+ is a function of the host, also
+//! the entries F_p(i, j) of two rows that body p already had.
 
 use std::iter::Sum;
 use std::sync::Mutex;
 
-use crate::body::GeneralizedInverse;
+use crate::body::{GeneralizedInverse, HostMultiple};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, START};
 use crate::linalg::{Csr, Operator, Packed};
-
-/// New columns are computed separately if they are less than one in this number of columns. Each takes solves with L and
-/// L' on the elimination paths of all rows, 2 (w^2 + 2 w h) operations for a supernode of w columns and h rows below. A
-/// column of a complete assembly takes half of that, only on its own path, and w operations for every other column there.
-/// On faces of cubes of 6k to 20k unknowns both take equal time if one column in six is new.
-const ONE_IN: usize = 6;
-/// Operators of up to this number of rows are assembled again for new rows, so that they have the bits of a new problem:
-/// L is read twice at most, as for the new columns alone.
-const SMALL: usize = 64;
 
 /// `F_p` and the rows of B over body p for which it was made.
 pub struct Kept {
     rows: Csr,
     operator: Packed,
-    /// It can be reused only for exactly these rows.
-    whole: bool,
 }
 
 /// Counts of the columns of dual operators, one for each row and body that it touches.
@@ -36,21 +26,16 @@ pub struct ColumnCounts {
 pub(super) enum Reuse {
     /// All rows, in the same order.
     All(Mutex<Option<Packed>>, usize),
-    /// Some rows: for every new row its number among the previous ones.
+    /// Some rows, and every column costs the host a solution: for every new row its number among the previous ones.
     Some { operator: Packed, old: Vec<Option<usize>> },
-    /// Too few rows: the whole operator, with this number of rows, is assembled.
+    /// The whole operator, with this number of rows, is assembled: a column computed alone or beside other rows differs
+    /// by rounding.
     Nothing(usize),
 }
 
 impl Kept {
     pub(super) fn new(rows: Csr, operator: Packed) -> Self {
-        Self { rows, operator, whole: false }
-    }
-
-    /// Restricts the reuse to exactly these rows: columns computed one by one differ by rounding from those of a complete
-    /// assembly, and if a matrix is given again, the results must have the previous bits.
-    pub fn only_whole(&mut self) {
-        self.whole = true;
+        Self { rows, operator }
     }
 
     pub fn bytes(&self) -> usize {
@@ -65,15 +50,14 @@ impl Sum for ColumnCounts {
 }
 
 impl Reuse {
-    pub fn of(kept: Option<Kept>, rows: &Csr) -> Self {
+    pub fn of(kept: Option<Kept>, kplus: &GeneralizedInverse, rows: &Csr) -> Self {
         let m = rows.rows();
         let Some(kept) = kept else { return Self::Nothing(m) };
         let old = matched(&kept.rows, rows);
         if m == kept.rows.rows() && old.iter().enumerate().all(|(i, old)| *old == Some(i)) {
             return Self::All(Mutex::new(Some(kept.operator)), m);
         }
-        let new = old.iter().filter(|old| old.is_none()).count();
-        if !kept.whole && new * ONE_IN < m {
+        if kplus.host().is_some() && old.iter().any(Option::is_some) {
             return Self::Some { operator: kept.operator, old };
         }
         Self::Nothing(m)
@@ -92,20 +76,20 @@ impl Reuse {
 
     /// `F_p = B_p K_p+ B_p'` of the new rows; must be called only once.
     pub fn operator(&self, kplus: &GeneralizedInverse, rows: &Csr) -> Result<Packed> {
-        match self {
-            Self::All(operator, _) => operator
+        match (self, kplus.host()) {
+            (Self::All(operator, _), _) => operator
                 .lock()
                 .ok()
                 .and_then(|mut operator| operator.take())
                 .ok_or_else(|| Error::new(Kind::Internal, "a dual operator was asked for twice")),
-            Self::Some { operator, old } if old.len() > SMALL => extended(operator, old, kplus, rows),
-            Self::Some { .. } | Self::Nothing(_) => kplus.inverse_form(rows),
+            (Self::Some { operator, old }, Some(host)) => extended(operator, old, host, rows),
+            _ => kplus.inverse_form(rows),
         }
     }
 }
 
 /// Copies the entries of two previous rows, and computes `F_p(i, j) = b_i K+ b_j'` for all others.
-fn extended(from: &Packed, old: &[Option<usize>], kplus: &GeneralizedInverse, rows: &Csr) -> Result<Packed> {
+fn extended(from: &Packed, old: &[Option<usize>], kplus: &HostMultiple, rows: &Csr) -> Result<Packed> {
     let m = old.len();
     let mut operator = Packed::zeros(m)?;
     for (i, of_i) in old.iter().enumerate().filter_map(|(i, old)| Some((i, (*old)?))) {

@@ -111,7 +111,13 @@ impl Model {
             let largest = rows.matrix.val.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
             let largest = if largest > 0.0 { largest } else { 1.0 };
             let checked = rows.check_empty_rows(kind, accuracy.length * largest);
-            checked.map_err(|error| empty_row_contradicts(error, first))?;
+            checked.map_err(|mut error| {
+                if accuracy.length == 0.0 {
+                    error.what += ", and no load, gap or coordinate of the problem tells whether its right-hand side is \
+                                   rounding: give coordinates, or a right-hand side of 0";
+                }
+                empty_row_contradicts(error, first)
+            })?;
         }
         Ok(())
     }

@@ -108,18 +108,12 @@ impl Prepared {
             self.release();
         }
         self.bodies.resize_with(model.bodies.len(), PreparedBody::default);
-        let mut changed = false;
         for (own, given) in self.bodies.iter_mut().zip(&model.bodies) {
             let now = given.revisions;
             own.symbolic.take_if(|_| own.of.analysed != now.analysed);
             own.keys.take_if(|_| own.of.stiffness != now.stiffness);
             own.inverse.take_if(|_| own.of != now);
-            changed |= own.of != now;
             own.of = now;
-        }
-        if changed {
-            let inverses = self.bodies.iter_mut().filter_map(|own| own.inverse.as_mut());
-            inverses.filter_map(|inverse| inverse.operator.as_mut()).for_each(Kept::only_whole);
         }
     }
 

@@ -9,7 +9,7 @@ use crate::platform::memory::zeros;
 use crate::setup::{Members, Prepared, Ready};
 use crate::solve::island::{Ends, Solved};
 use crate::solve::recovery::{Ending, Recovered};
-use crate::solve::report::{Report, RowState};
+use crate::solve::report::{Outcome, Report, RowState};
 use crate::solve::slides::Slide;
 
 /// The answer of the last solve, in the units of the host. Entries are NaN for bodies of an island without an answer.
@@ -68,6 +68,9 @@ impl Answer {
                 Ok(mut solved) => {
                     answer.cleaned.push(solved.cleaned.take());
                     let own = named(model, ready, solved.ending.judgement.certificate);
+                    if solved.outcome == Outcome::Marginal && solved.ending.judgement.travelled {
+                        answer.report.travelled = own.equilibrium.place;
+                    }
                     match &mut all {
                         None => all = Some(own),
                         Some(all) => all.merge(&own),

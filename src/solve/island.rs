@@ -243,6 +243,9 @@ fn attempt(
             outcome => outcome,
         };
     }
+    if outcome == Outcome::Inaccurate && ending.judgement.travelled {
+        outcome = Outcome::Marginal;
+    }
     let unheld = dual.unheld.as_ref().map_or(0.0, |taken| taken.share);
     let recovering = recovering.elapsed();
     Ok(Tried::Ended(Box::new(Solved {

@@ -15,7 +15,8 @@ use crate::solve::slides::Slide;
 pub enum Outcome {
     /// The certificate holds.
     Solved,
-    /// Nothing holds a small part of the load, or a body slides far along rows that hardly resist it.
+    /// Nothing holds a small part of the load, a body slides far along rows that hardly resist it, or moves so far that its
+    /// strain is lost in the rounding of its displacement.
     Marginal,
     /// The dual is solved up to rounding, but the certificate does not hold.
     Inaccurate,
@@ -64,6 +65,8 @@ pub struct Report {
     pub unheld: f64,
     /// The body that slides farthest, along a motion that rows with a force hardly resist.
     pub slide: Option<Slide>,
+    /// A body that moves so far that its strain is lost in the rounding of its displacement.
+    pub travelled: Option<usize>,
     /// Work of the methods on all islands.
     pub counts: qp::Counts,
     /// The direct finish (option `finish`) ran and its answer was kept.
@@ -106,6 +109,7 @@ impl Report {
             undetermined: 0,
             unheld: 0.0,
             slide: None,
+            travelled: None,
             counts: qp::Counts::default(),
             finished: false,
             gap_scale: 0.0,

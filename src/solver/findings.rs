@@ -43,7 +43,7 @@ impl Findings {
     pub fn of_report(host: &Model, model: &Model, prepared: &Prepared, report: &Report) -> Self {
         let mut findings = Self::new(host, model, prepared, Ok(report.outcome));
         (findings.undetermined, findings.unheld) = (report.undetermined, report.unheld);
-        findings.place.body = report.body;
+        findings.place.body = report.travelled.or(report.body);
         findings
     }
 

@@ -30,7 +30,17 @@ pub fn begin(log: &Log, model: &Model, call: &str) -> Result<()> {
 /// One line on the answer, and warnings.
 pub fn result(log: &Log, model: &Model, report: &Report) -> Result<()> {
     log.say(LogLevel::Result, || result_line(report))?;
-    if report.outcome == Outcome::Marginal && (report.slide.is_none() || report.unheld > 0.0) {
+    if let Some(body) = report.travelled {
+        let body = body as i64 + model.settings.index_base;
+        log.say(LogLevel::Result, || {
+            format!(
+                "warning: the load of body {body} is below the rounding of its displacement and counts as none: its strain is \
+                 lost, and of its forces only their balance is certain"
+            )
+        })?;
+    }
+    let told = report.slide.is_some() || report.travelled.is_some();
+    if report.outcome == Outcome::Marginal && (!told || report.unheld > 0.0) {
         let what = "warning: a small part of the load, below 1e-7 of it, is held by no row";
         log.say(LogLevel::Result, || what.to_owned())?;
     }

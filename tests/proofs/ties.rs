@@ -73,3 +73,24 @@ fn ties_that_only_a_displacement_a_million_times_as_large_satisfies_contradict_e
         }
     }
 }
+
+/// Without any length rounding and a true contradiction look alike.
+#[test]
+fn a_row_without_entries_in_a_problem_without_length_is_refused_with_what_would_decide() {
+    for (load, rhs, refused) in
+        [(0.0, -1e-17, Some(true)), (0.0, -0.5, Some(true)), (1.0, -0.5, Some(false)), (1.0, -1e-17, None)]
+    {
+        let chain = body(springs(2, &[(0, 1, 1.0)], &[(0, 1.0)]), vec![], vec![load, 0.0]);
+        let all = deck(vec![chain], &[(&[], rhs), (&[(1, 1.0)], 0.0)], &[]);
+        let mut problem = hand_over::problem(&all).unwrap();
+        let undecided = problem.solve().err().map(|error| {
+            assert_eq!((error.kind, error.place.row), (Kind::GapsContradict, Some(0)));
+            error.to_string().contains("give coordinates")
+        });
+        assert_eq!(undecided, refused, "{load} {rhs:e}");
+        if refused == Some(true) {
+            problem.set_coordinates(0, 1, &[0, 1], &[1, 1], &[0.0, 2.0], 1).unwrap();
+            assert_eq!(problem.solve().is_ok(), rhs == -1e-17, "{rhs:e}");
+        }
+    }
+}

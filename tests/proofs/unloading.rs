@@ -55,6 +55,28 @@ fn a_zero_load_after_any_start_is_answered_with_zeros() {
     }
 }
 
+/// A chain flies to a wall: its deformation becomes less than the last digits of its displacement.
+#[test]
+fn a_load_below_the_rounding_of_the_way_to_a_wall_is_told_and_held() {
+    let mut told = 0;
+    for by in [1e-6, 1e-13, 1e-15, 1e-17, 1e-20] {
+        let load = vec![0.3 * by, 0.0, 0.7 * by];
+        let chain = body(springs(3, &[(0, 1, 2.0), (1, 2, 3.0)], &[]), vec![vec![1.0; 3]], load);
+        let mut problem = hand_over::problem(&deck(vec![chain], &[(&[(2, 1.0)], 1.1)], &[])).unwrap();
+        let report = problem.solve().unwrap();
+        let force = problem.multipliers(RowKind::Inequality).unwrap()[0];
+        assert!((force - by).abs() < 1e-12 * by, "{by:e}: {force:e}");
+        let expected = if report.travelled.is_some() { Outcome::Marginal } else { Outcome::Solved };
+        assert_eq!(report.outcome, expected, "{by:e}: {report:?}");
+        assert!(report.travelled.is_none() || by < 1e-12, "{by:e}");
+        if report.travelled.is_some() {
+            told += 1;
+            assert_eq!(problem.findings().unwrap().place.body, Some(0));
+        }
+    }
+    assert!(told >= 3, "{told}");
+}
+
 /// The cube of springs of a user: a network on supports by equality rows, 1, .5, 0.
 #[test]
 fn a_cube_of_springs_on_supports_is_unloaded() {

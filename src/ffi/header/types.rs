@@ -143,8 +143,8 @@ pub struct feti_info {
     /// Columns of the dual operators of the bodies (one column for each body that a row touches) computed since the
     /// problem was created.
     pub columns_computed: i64,
-    /// Columns that were reused after a change of rows or bodies since the problem was created; on a body with up to 64
-    /// rows they are computed again along with the new ones, for the bits of a new problem.
+    /// Columns that were reused after a change of rows or bodies since the problem was created: those of bodies whose rows
+    /// are unchanged, and, on bodies given as functions, those of rows that are unchanged.
     pub columns_kept: i64,
     /// Bodies whose dual operator is assembled (option dual_operator).
     pub explicit_operators: i64,

@@ -7,13 +7,12 @@
 //! | `numeric` | the entries of L, multifrontal |
 //! | `factor` | L with its analysis, `K_ff^-1 x` |
 //! | `triangular` | solves with L and L' |
-//! | `inverse_form`, `inverse_columns` | `B K_ff^-1 B'`, some columns of it |
+//! | `inverse_form` | `B K_ff^-1 B'` |
 //! | `renewal` | L of matrices that differ in some columns |
 //! | `schur` | the Schur complement of the dofs eliminated last |
 
 mod analysis;
 mod factor;
-mod inverse_columns;
 mod inverse_form;
 mod numeric;
 mod renewal;
@@ -23,7 +22,6 @@ mod triangular;
 pub use analysis::ordering::nested_dissection;
 pub use analysis::Analysis;
 pub use factor::{Breakdown, Cholesky};
-pub use inverse_columns::inverse_columns;
 pub use inverse_form::inverse_form;
 pub use renewal::Renewal;
 pub use schur::Trailing;

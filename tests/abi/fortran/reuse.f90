@@ -35,7 +35,7 @@ program reuse
   call check_step([0, bars - 1, (bars - 1) * first_rows, first_rows], 1.75_dp, 'new values')
 
   call give_rows(nodes, nodes)
-  call check_step([0, 0, bars, bars * first_rows], 1.0_dp, 'new rows')
+  call check_step([0, 0, bars * nodes, 0], 1.0_dp, 'new rows')
 
   call feti_rows_clear(p, FETI_INEQUALITY)
   call give_rows(1, nodes)
