@@ -1697,12 +1697,13 @@ int32_t feti_setup(struct feti_problem *p);
  * FETI_ITERATIONS at the limit of option max_steps; FETI_TIME at the limit of option time_limit,
  * which counts from the call and includes a setup that is due; FETI_CANCELLED if the host has
  * cancelled; FETI_STALLED if steps no longer reduce the error; FETI_INACCURATE if the certificate
- * does not pass; FETI_MARGINAL if a part of the load, below 1e-7 of it, is not held. With a status
- * below 0 the group of bodies concerned has no answer. FETI_LOAD_NOT_HELD if no contact force
- * balances the load; FETI_SLIDES if friction holds only a part of the load and no equilibrium was
- * found; FETI_GAPS_CONTRADICT if rows contradict each other; FETI_INDEFINITE if K has negative
- * stiffness along a motion that closed rows do not stop. feti_diagnosis has the proof of each. The
- * call runs feti_setup when it is due, and then fails for the same reasons.
+ * does not pass; FETI_MARGINAL if a part of the load, below 1e-7 of it, is not held, or a body
+ * moves far beyond its deformation (the log names it). With a status below 0 the group of bodies
+ * concerned has no answer. FETI_LOAD_NOT_HELD if no contact force balances the load; FETI_SLIDES
+ * if friction holds only a part of the load and no equilibrium was found; FETI_GAPS_CONTRADICT if
+ * rows contradict each other; FETI_INDEFINITE if K has negative stiffness along a motion that
+ * closed rows do not stop. feti_diagnosis has the proof of each. The call runs feti_setup when it
+ * is due, and then fails for the same reasons.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
@@ -3195,7 +3196,8 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 #define FETI_INACCURATE 5
 
 /**
- * The answer is usable but incomplete: a small part of the load is not held.
+ * The answer is usable but incomplete: a small part of the load is not held, or a body moves far
+ * beyond its deformation.
  */
 #define FETI_MARGINAL 6
 

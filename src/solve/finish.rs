@@ -53,8 +53,8 @@ pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
         return Ok(false);
     }
     let negative = NegativeMotions::of(recovery.ready);
-    let apart = if is_delicate(recovery, ending) { 1.0 } else { FAR };
-    let mut finish = Finish { recovery, ending, apart, replaced: false, negative };
+    let delicate = is_delicate(recovery, ending);
+    let mut finish = Finish { recovery, ending, delicate, replaced: false, negative };
     match finish.run() {
         Ok(()) => {}
         Err(error) if error.kind == Kind::Memory => {}
@@ -70,8 +70,8 @@ pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
 struct Finish<'a, 'b> {
     recovery: &'b Recovery<'a>,
     ending: &'b mut Ending,
-    /// Motions larger than the deformation by this factor are kept apart from it.
-    apart: f64,
+    /// Rounding of K along motions no larger than the deformation matters, and so do errors below those of the certificate.
+    delicate: bool,
     replaced: bool,
     negative: NegativeMotions,
 }
@@ -81,7 +81,7 @@ impl Finish<'_, '_> {
     fn run(&mut self) -> Result<()> {
         let Faces { qp, direct } = &self.recovery.faces;
         let mut active = qp.at_bound(&self.ending.solution.x);
-        let mut point = SplitPoint::of(self.recovery, self.ending, self.apart)?;
+        let mut point = SplitPoint::of(self.recovery, self.ending, if self.delicate { 1.0 } else { FAR })?;
         let mut visited: Vec<Vec<bool>> = Vec::new();
         while visited.len() < FACES && !visited.contains(&active) {
             let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
@@ -96,6 +96,9 @@ impl Finish<'_, '_> {
             if face.face.is_truncated() {
                 face = Feedback::on(face.face.in_full()?, point.alpha.len(), &self.negative)?;
                 self.correct(&mut point, &face)?;
+            }
+            if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
+                break;
             }
             visited.push(std::mem::replace(&mut active, point.active(self.recovery)));
         }
@@ -296,7 +299,7 @@ mod tests {
                 let negative = NegativeMotions::of(recovery.ready);
                 let face = Feedback::on(face, 0, &negative).unwrap();
                 let mut finish =
-                    Finish { recovery, ending: &mut ending, apart: 1.0, replaced: false, negative };
+                    Finish { recovery, ending: &mut ending, delicate: true, replaced: false, negative };
                 finish.correct(&mut point, &face).unwrap();
                 assert_eq!(finish.replaced, right, "{rows:?}");
                 assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");

@@ -243,7 +243,7 @@ fn attempt(
             outcome => outcome,
         };
     }
-    if outcome == Outcome::Inaccurate && ending.judgement.travelled {
+    if matches!(outcome, Outcome::Inaccurate | Outcome::Stalled) && ending.judgement.travelled {
         outcome = Outcome::Marginal;
     }
     let unheld = dual.unheld.as_ref().map_or(0.0, |taken| taken.share);

@@ -62,9 +62,10 @@ fn a_load_below_the_rounding_of_the_way_to_a_wall_is_told_and_held() {
     for by in [1e-6, 1e-13, 1e-15, 1e-17, 1e-20] {
         let load = vec![0.3 * by, 0.0, 0.7 * by];
         let chain = body(springs(3, &[(0, 1, 2.0), (1, 2, 3.0)], &[]), vec![vec![1.0; 3]], load);
-        let mut problem = hand_over::problem(&deck(vec![chain], &[(&[(2, 1.0)], 1.1)], &[])).unwrap();
+        let walls: [(&[(usize, f64)], f64); 2] = [(&[(2, 1.0)], 1.1), (&[(1, 1.0)], 1.1)];
+        let mut problem = hand_over::problem(&deck(vec![chain], &walls, &[])).unwrap();
         let report = problem.solve().unwrap();
-        let force = problem.multipliers(RowKind::Inequality).unwrap()[0];
+        let force: f64 = problem.multipliers(RowKind::Inequality).unwrap().iter().sum();
         assert!((force - by).abs() < 1e-12 * by, "{by:e}: {force:e}");
         let expected = if report.travelled.is_some() { Outcome::Marginal } else { Outcome::Solved };
         assert_eq!(report.outcome, expected, "{by:e}: {report:?}");

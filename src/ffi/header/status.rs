@@ -17,7 +17,7 @@ pub const FETI_CANCELLED: i32 = 3;
 pub const FETI_STALLED: i32 = 4;
 /// The certificate does not pass.
 pub const FETI_INACCURATE: i32 = 5;
-/// The answer is usable but incomplete: a small part of the load is not held.
+/// The answer is usable but incomplete: a small part of the load is not held, or a body moves far beyond its deformation.
 pub const FETI_MARGINAL: i32 = 6;
 /// Memory could not be reserved, or option memory_limit would be exceeded.
 pub const FETI_MEMORY: i32 = -1;
@@ -63,7 +63,7 @@ const TABLE: [(i32, &CStr, &CStr); 22] = [
     (FETI_CANCELLED, c"FETI_CANCELLED", c"cancelled by the host"),
     (FETI_STALLED, c"FETI_STALLED", c"stopped because steps no longer reduce the error"),
     (FETI_INACCURATE, c"FETI_INACCURATE", c"solved, but the certificate does not pass"),
-    (FETI_MARGINAL, c"FETI_MARGINAL", c"solved, but a small part of the load is not held by the contact"),
+    (FETI_MARGINAL, c"FETI_MARGINAL", c"solved, but a small part of the load is not held, or a body moves far beyond its deformation"),
     (FETI_MEMORY, c"FETI_MEMORY", c"memory could not be reserved, or the memory limit would be exceeded"),
     (FETI_HANDLE, c"FETI_HANDLE", c"the handle is NULL, destroyed, or not from this library"),
     (FETI_BUSY, c"FETI_BUSY", c"another call on this problem is running"),
