@@ -13,6 +13,8 @@ use crate::{Csr, Deck, Rows};
 const TOLERANCE: f64 = 1e-8;
 /// Rounding of a sum of terms.
 const NOISE: f64 = 64.0 * f64::EPSILON;
+/// Accuracy of the data: on a body without load forces below this part of all forces are none.
+const ACCURACY: f64 = 1e-10;
 /// An error is none below this part of the body's own.
 const OWN: f64 = 1e-6;
 /// Nor below this many times what the certificate allows.
@@ -147,11 +149,15 @@ impl<'a> Yardstick<'a> {
                 }
             }
         }
+        let of_bodies = |v: &[f64]| -> Vec<f64> { (0..of_rows.len()).map(|p| self.norm(p, v, -1)).collect() };
+        let loads = of_bodies(&load);
+        let all = loads.iter().chain(&of_bodies(&self.reaction)).map(|size| size * size).sum::<f64>().sqrt();
+        let idle = |p: usize| if loads[p] <= NOISE * all { ACCURACY * all } else { 0.0 };
         for (p, of_rows) in of_rows.iter().enumerate() {
             let norm = |v: &[f64]| self.norm(p, v, -1);
             let forces = norm(&self.reaction);
             let of_body = TOLERANCE * (norm(&load) + forces + norm(&strain)) + NOISE * norm(&terms);
-            let overlooked = of_body.max(*of_rows);
+            let overlooked = of_body.max(*of_rows).max(idle(p));
             self.sizes.push(Size { deformation: self.norm(p, &deformation, 1), forces, overlooked });
         }
         self.single = (0..terms.len())

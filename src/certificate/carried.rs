@@ -226,7 +226,7 @@ mod tests {
             matrix: Arc::new(matrix),
             rhs: vec![0.0; rows.len()],
             compliance: vec![0.0; rows.len()],
-            cancelled: Vec::new(),
+            ..RowSet::default()
         }
     }
 

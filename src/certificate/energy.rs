@@ -25,6 +25,8 @@ pub(super) struct Energies {
     /// and the sum of the absolute values of these terms.
     constrained: f64,
     constrained_size: f64,
+    /// The same of what was taken from right-hand sides as rounding.
+    rounding: f64,
     /// Some force is not 0.
     acting: bool,
 }
@@ -58,6 +60,7 @@ impl Energies {
                 self.stored += stored;
                 self.constrained += work + stored;
                 self.constrained_size += work.abs() + stored;
+                self.rounding += force.abs() * rows.rounding.get(i).unwrap_or(&0.0);
             }
         }
     }
@@ -74,7 +77,7 @@ impl Energies {
     /// lambda_t + b |s|` of every node, relative to `tol` times the sum of the sizes of its terms plus rounding; V is the
     /// work of the loads, if known.
     pub fn entry(&self, limit: f64, work_of_loads: f64) -> Entry {
-        let noise = NOISE * (self.terms + self.forces.max(work_of_loads) + self.stored);
+        let noise = NOISE * (self.terms + self.forces.max(work_of_loads) + self.stored) + self.rounding;
         // if the squares of forces underflow, the energies are not known
         let noise = if self.acting && !noise.is_normal() { f64::NAN } else { noise };
         let size = self.strain.abs() + self.work.abs() + self.constrained_size;

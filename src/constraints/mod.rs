@@ -51,6 +51,8 @@ pub struct RowSet {
     pub compliance: Vec<f64>,
     /// Rows without entries, because repeated entries cancelled up to rounding.
     pub cancelled: Vec<usize>,
+    /// What was taken from the right-hand sides of the host as rounding, >= 0, length; none was if it is empty.
+    pub rounding: Vec<f64>,
 }
 
 impl Default for RowSet {
@@ -60,6 +62,7 @@ impl Default for RowSet {
             rhs: Vec::new(),
             compliance: Vec::new(),
             cancelled: Vec::new(),
+            rounding: Vec::new(),
         }
     }
 }
@@ -72,7 +75,9 @@ impl RowSet {
     /// A copy that shares the entries of the rows; `what` names it in errors.
     pub fn copied(&self, what: &str) -> Result<Self> {
         let (rhs, compliance) = (copied(&self.rhs, what)?, copied(&self.compliance, what)?);
-        Ok(Self { matrix: Arc::clone(&self.matrix), rhs, compliance, cancelled: self.cancelled.clone() })
+        let (matrix, cancelled, rounding) =
+            (Arc::clone(&self.matrix), self.cancelled.clone(), self.rounding.clone());
+        Ok(Self { matrix, rhs, compliance, cancelled, rounding })
     }
 
     /// Entries and compliances equal those of the other, and the same rows may close.
@@ -120,7 +125,7 @@ impl RowSet {
             added.push_row(entries);
         }
         let compliance = zeros(rows, "constraint rows")?;
-        self.append(&Self { matrix: Arc::new(added), rhs, compliance, cancelled }, offsets)
+        self.append(&Self { matrix: Arc::new(added), rhs, compliance, cancelled, ..Self::default() }, offsets)
     }
 
     /// Appends rows over the same unknowns; returns the number of the first.
@@ -316,7 +321,7 @@ mod tests {
         let mut matrix = Csr::empty(2);
         matrix.push_row([(0, 1.0), (1, -1.0)]);
         let mut rows =
-            RowSet { matrix: Arc::new(matrix), rhs: vec![0.0], compliance: vec![0.0], cancelled: vec![] };
+            RowSet { matrix: Arc::new(matrix), rhs: vec![0.0], compliance: vec![0.0], ..RowSet::default() };
         let s = row_scales(&rows, &[4.0, 4e12], 1.0);
         assert!((s[0] - 2.0).abs() < 1e-11);
         rows.set_compliance(0, &[0.75]).unwrap(); // 1/4 + 3/4 = 1, D and 1/k in the same unit

@@ -155,8 +155,10 @@ impl Island {
             (&mut self.friction.tangential, RowKind::Tangential),
         ] {
             let rows = model.rows(kind);
-            let of_host = members.rows.rhs.iter_mut().zip(&members.numbers);
-            of_host.for_each(|(c, &i)| *c = accuracy.rhs(kind, rows, i));
+            let Members { numbers, rows: own } = members;
+            own.rhs.iter_mut().zip(&*numbers).for_each(|(c, &i)| *c = accuracy.rhs(kind, rows, i));
+            let taken = |(c, &i): (&f64, &usize)| if *c == rows.rhs[i] { 0.0 } else { rows.rhs[i].abs() };
+            own.rounding = own.rhs.iter().zip(&*numbers).map(taken).collect();
         }
         self.accuracy = accuracy;
         for (own, &number) in self.friction.nodes.iter_mut().zip(&self.friction.numbers) {
@@ -302,7 +304,7 @@ fn restricted(
         Arc::new(own)
     };
     let (rhs, compliance) = (copied(&pick(&rows.rhs), WHAT)?, pick(&rows.compliance));
-    Ok(RowSet { matrix, rhs, compliance, cancelled: Vec::new() })
+    Ok(RowSet { matrix, rhs, compliance, ..RowSet::default() })
 }
 
 impl Island {

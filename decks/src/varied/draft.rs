@@ -25,6 +25,8 @@ pub(crate) struct Draft {
     pub u: Vec<f64>,
     /// |K u|_{D^-1} of each body, its share of one row.
     pub strength: Vec<f64>,
+    /// Bodies that hardly deform.
+    pub idle: Vec<bool>,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
     /// Slack of each contact row over the length of its group; 0 where it is closed.
@@ -91,7 +93,7 @@ impl Draft {
         let deck = Deck::new("varied", list);
         let diagonal: Vec<f64> = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal()).collect();
         let grounded = all_grounded(&deck);
-        let (u, strength) = (vec![0.0; diagonal.len()], vec![]);
+        let (u, strength, idle) = (vec![0.0; diagonal.len()], vec![], vec![]);
         let (lambda, mu, slack) = (vec![], vec![], vec![]);
         Draft {
             random,
@@ -104,6 +106,7 @@ impl Draft {
             penalties,
             u,
             strength,
+            idle,
             lambda,
             mu,
             slack,
@@ -163,7 +166,11 @@ impl Draft {
             (0..force.len()).for_each(|i| force[i] *= f64::from(u8::from(!self.grounded[range.start + i])));
             let weights: Vec<f64> = own.iter().map(|d| 1.0 / d).collect();
             let size = inner(&force, &weights, &force).sqrt();
-            self.strength.push(if size > 0.0 { size } else { length * own[0].sqrt() });
+            let idle = self.is(Class::Idle) && self.random.chance(0.4);
+            let share = if idle { self.random.decades(-22.0, -14.0) } else { 1.0 };
+            u.iter_mut().for_each(|u| *u *= share);
+            self.idle.push(idle);
+            self.strength.push(share * if size > 0.0 { size } else { length * own[0].sqrt() });
             self.u[range].copy_from_slice(&u);
         }
     }

@@ -55,6 +55,8 @@ pub enum Class {
     Printed,
     /// Some bodies of one unknown have 1e-20 to 1 of the stiffness that they were drawn with. Only as an extra.
     Pilots,
+    /// Some bodies have 1e-22 to 1e-14 of the deformation and forces that they were drawn with. Only as an extra.
+    Idle,
 }
 
 pub const CLASSES: [Class; 13] = [
@@ -141,12 +143,13 @@ pub const SECOND_MIXTURE: Mixture = Mixture {
     chance: 0.3,
 };
 
-/// What hosts hand over: pilots and printed rows among the others.
+/// What hosts hand over: pilots, printed rows and idle bodies among the others.
 pub const HOST_MIXTURE: Mixture = Mixture {
     unknowns: 90,
     extras: &[
         Class::Printed,
         Class::Pilots,
+        Class::Idle,
         Class::Travel,
         Class::Far,
         Class::Glue,

@@ -4,6 +4,7 @@ use crate::varied::condition::Face;
 use crate::varied::draft::Draft;
 use crate::varied::Class;
 use crate::vector::norm_max;
+use crate::yardstick::body_of;
 
 /// Rows added at most until no motion is left.
 const HOLDING: usize = 60;
@@ -115,7 +116,11 @@ pub(crate) fn contact(draft: &mut Draft, closed: bool, strength: f64) {
     }
 }
 
+/// A row between idle bodies and others is open: it would hold the others by next to nothing.
 pub(crate) fn push_contact(draft: &mut Draft, entries: &Entries, closed: bool, strength: f64) {
+    let mut idle = entries.iter().map(|entry| draft.idle.get(body_of(&draft.deck, entry.0)));
+    let first = idle.next();
+    let closed = closed && idle.all(|idle| Some(idle) == first);
     let compliance = compliance(draft, entries);
     draft.deck.contact.push_compliant(entries, 0.0, compliance);
     let (force, length) = sizes(draft, entries, compliance);

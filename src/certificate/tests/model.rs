@@ -223,7 +223,7 @@ impl DenseModel {
             matrix: matrix.into(),
             rhs: rows.iter().map(|row| row.1).collect(),
             compliance: rows.iter().map(|row| row.2).collect(),
-            cancelled: Vec::new(),
+            ..RowSet::default()
         }
     }
 

@@ -202,7 +202,8 @@ fn members(
     }
     let rhs = copied(&cut.rows.rhs[..numbers.len()], WHAT)?;
     let compliance = copied(&cut.rows.compliance[..numbers.len()], WHAT)?;
-    let rows = RowSet { matrix: Arc::new(matrix), rhs, compliance, cancelled: Vec::new() };
+    let rounding = copied(&cut.rows.rounding[..numbers.len()], WHAT)?;
+    let rows = RowSet { matrix: Arc::new(matrix), rhs, compliance, rounding, ..RowSet::default() };
     Ok(Members { rows, numbers })
 }
 
