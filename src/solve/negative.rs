@@ -15,7 +15,7 @@
 //! rho.
 
 use crate::error::{Error, Kind, Proof, Result};
-use crate::linalg::vector::{axpy, dot, norm_max};
+use crate::linalg::vector::{axpy, dot, norm_max, NOISE};
 use crate::model::Settings;
 use crate::progress::Steps;
 use crate::qp::{AcceptanceTest, Counts, Qp, Solution, Verdict};
@@ -254,7 +254,9 @@ impl<'a> Search<'a, '_> {
         let found = match self.negative.free(self.qp, &round.held)? {
             Some(alpha) => Some((vec![0.0; round.x.len()], alpha, f64::INFINITY)),
             None => match (&round.feedback, last) {
-                (Some(feedback), _) => (feedback.rate() >= 1.0).then(|| feedback.motion(round.x.len())),
+                (Some(feedback), _) => {
+                    (1.0 - feedback.rate() < NOISE).then(|| feedback.motion(round.x.len()))
+                }
                 (None, Some(last)) => {
                     let minus = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x - y).collect();
                     let rate = (dot(&round.change, &round.change) / dot(&last.change, &last.change)).sqrt();

@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{axpy, norm_max};
+use crate::linalg::vector::{axpy, norm_max, NOISE};
 use crate::linalg::Csr;
 use crate::platform::memory::{filled, zeros};
 use crate::solve::recovery::Recovery;
@@ -39,15 +39,19 @@ impl Sliding {
         }
     }
 
-    /// `v'K v + x'C x < 0` by the matrices of the host, and by more than the energy from the motion of the rows F.
+    /// `v'K v + x'C x <= 0` up to rounding by the matrices of the host, and by more than the energy from the motion of the rows F:
+    /// without resistance the load alone decides how far the motion goes.
     pub fn falls(&self, recovery: &Recovery, held: &[bool]) -> Result<bool> {
         let (rows, unit) = (&recovery.ready.rows, recovery.ready.island.unit);
         let mut image = filled(self.v.len(), Twofold::default(), WHAT)?;
         for body in &recovery.data.bodies {
             body.stiffness.add_twofold(1.0 / unit, &self.v[body.range()], &mut image[body.range()])?;
         }
-        let mut energy = Twofold::default();
-        self.v.iter().zip(image).for_each(|(v, image)| energy.add_product(*v, image.value()));
+        let (mut energy, mut terms) = (Twofold::default(), 0.0);
+        for (v, image) in self.v.iter().zip(image) {
+            energy.add_product(*v, image.value());
+            terms += (v * image.value()).abs();
+        }
         let mut moved = 0.0;
         for i in (0..rows.groups()).filter(|&i| !held[i]) {
             let (given, compliance) = (rows.matrix.row_dot(i, &self.v), rows.compliance[i]);
@@ -58,7 +62,7 @@ impl Sliding {
             energy.add_product(self.x[i], compliance * self.x[i]);
             moved += left * self.x[i].abs();
         }
-        Ok(energy.value() < -2.0 * moved)
+        Ok(energy.value() < NOISE * terms - 2.0 * moved)
     }
 
     /// The largest t for which `u + t v` violates no row marked in `held`; infinite if no such row stops the motion.

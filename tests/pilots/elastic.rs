@@ -10,7 +10,7 @@ const E: f64 = 1e6;
 
 /// How the pilot with a stiffness of kp to the ground stands in the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Pilot {
+pub enum Pilot {
     /// A body of its own.
     Alone,
     /// Hung by springs kp on the upper nodes of the punch, in one matrix for the whole model.
@@ -32,13 +32,6 @@ fn pressed(n: usize, kp: f64, pilot: Pilot) -> Vec<f64> {
     let (base, punch) = (block(below, 0.0, E), block(above, below as f64 * size, 10.0 * E));
     let (held, free) = (base.floating().body, punch.floating().body);
     let mut problem = Problem::new();
-    let add = |problem: &mut Problem, k: &Csr, load: &[f64]| {
-        let body = problem.add_body(load.len()).unwrap();
-        let col: Vec<i64> = k.col.iter().map(|&j| j as i64).collect();
-        let input = SparseInput { ptr: &k.ptr, col: &col, val: &k.val, storage: Storage::Full };
-        problem.set_stiffness(body, input).unwrap();
-        problem.set_load(body, load).unwrap();
-    };
     let (first, led) = (held.dofs(), held.dofs() + free.dofs());
     let own: Vec<f64> = (0..9).map(|at| if at % 4 == 0 { kp } else { 0.0 }).collect();
     let own = Csr::from_dense(3, &own);
@@ -64,18 +57,30 @@ fn pressed(n: usize, kp: f64, pilot: Pilot) -> Vec<f64> {
         equalities.push(&[(top + 1, 1.0), (led + 1, -1.0), (led + 2, -arm)], 0.0);
     }
     equalities.push(&[(led, 1.0)], 0.0);
-    for (kind, rows) in [(RowKind::Inequality, &contact), (RowKind::Equality, &equalities)] {
-        let all: Vec<Vec<(usize, f64)>> = (0..rows.rhs.len()).map(|i| rows.matrix.row(i).collect()).collect();
-        let all: Vec<_> = all.iter().zip(&rows.rhs).map(|(row, rhs)| (&row[..], *rhs)).collect();
-        crate::add_rows(&mut problem, kind, &all);
-    }
+    add_rows(&mut problem, &contact, &equalities);
     let report = solved(&mut problem, &format!("{n} elements, kp {kp:e}, {pilot:?}"));
     assert!(report.counts.products < 10 * n, "{n} elements, kp {kp:e}, {pilot:?}: {:?}", report.counts);
     forces(&problem)[0].clone()
 }
 
+pub fn add(problem: &mut Problem, k: &Csr, load: &[f64]) {
+    let body = problem.add_body(load.len()).unwrap();
+    let col: Vec<i64> = k.col.iter().map(|&j| j as i64).collect();
+    let input = SparseInput { ptr: &k.ptr, col: &col, val: &k.val, storage: Storage::Full };
+    problem.set_stiffness(body, input).unwrap();
+    problem.set_load(body, load).unwrap();
+}
+
+pub fn add_rows(problem: &mut Problem, contact: &Rows, equalities: &Rows) {
+    for (kind, rows) in [(RowKind::Inequality, contact), (RowKind::Equality, equalities)] {
+        let all: Vec<Vec<(usize, f64)>> = (0..rows.rhs.len()).map(|i| rows.matrix.row(i).collect()).collect();
+        let all: Vec<_> = all.iter().zip(&rows.rhs).map(|(row, rhs)| (&row[..], *rhs)).collect();
+        crate::add_rows(problem, kind, &all);
+    }
+}
+
 /// One matrix for these parts, with springs of stiffness kp between these unknowns.
-fn hung(parts: [&Csr; 3], springs: Vec<(usize, usize)>, kp: f64) -> Csr {
+pub fn hung(parts: [&Csr; 3], springs: Vec<(usize, usize)>, kp: f64) -> Csr {
     let (mut rows, mut start) = (Vec::new(), 0);
     for part in parts {
         rows.extend((0..part.rows).map(|i| part.row(i).map(|(j, v)| (start + j, v)).collect::<Vec<_>>()));

@@ -4,10 +4,12 @@
 //! | module | claims |
 //! |---|---|
 //! | [`by_hand`] | pressed, moved and tied pilots, chains, a rigid node with rotation, at every kp |
+//! | [`bolt`] | the section of a bolt, whose halves a pilot pulls together |
 //! | [`changes`] | rows and stiffnesses that change whether an unknown is carried |
 //! | [`elastic`] | an elastic punch on an elastic block, led by a pilot, alone or hung on it by weak springs |
 //! | [`hung`] | pilots hung by weak springs on the body that they press, in one matrix |
 
+mod bolt;
 mod by_hand;
 mod changes;
 mod elastic;

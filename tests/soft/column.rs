@@ -153,3 +153,19 @@ fn a_diagonal_of_zero_beside_other_entries_is_that_of_a_soft_motion() {
         }
     }
 }
+
+/// Springs of 100 on both edges and -200: nothing resists the tilt, and no tilt balances a moment. Or two unknowns of stiffness
+/// -1 and 1 that a row makes equal.
+#[test]
+fn a_stiffness_that_rows_cancel_exactly_leaves_no_minimum() {
+    for units in UNITS {
+        let mut problem = columns(1, -200.0, units);
+        soft(&mut problem, 0, &[&[1.0]]).unwrap();
+        assert_eq!(problem.solve().unwrap_err().kind, Kind::Indefinite, "{units:?}");
+        let mut problem = Problem::new();
+        body(&mut problem, &[-units.0, 0.0, 0.0, units.0], &[units.0 * units.1, 0.0]);
+        soft(&mut problem, 0, &[&[1.0, 0.0]]).unwrap();
+        rows(&mut problem, RowKind::Equality, &[&[(0, 1.0), (1, -1.0)]], &[0.0]);
+        assert_eq!(problem.solve().unwrap_err().kind, Kind::Indefinite, "{units:?}");
+    }
+}
