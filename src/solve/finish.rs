@@ -23,11 +23,7 @@ const ROUNDING: f64 = 1e-4;
 const MUCH_BETTER: f64 = 0.5;
 const NO_WORSE: f64 = 1.1;
 
-/// Above this ratio of forces to deforming forces, as beside soft bodies and rows that join uneven bodies, the error of an
-/// answer may be much larger than its certificate.
-const CANCELLING: f64 = 1e4;
-
-/// Errors may also be large on bodies beside others that are deformed more by this factor.
+/// Errors may be large on bodies beside others that are deformed more by this factor.
 const UNEVEN: f64 = 100.0;
 
 /// Whether option `finish` asks for the finish of an island's answer. `automatic`: if an error that passes the
@@ -41,8 +37,10 @@ pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending) -
     settings.finish == FinishBy::Direct || default && (overlooked || is_delicate(recovery, ending))
 }
 
+/// The error of an answer may be much larger than its certificate: beside soft bodies, by rows that join uneven bodies, and where
+/// forces exceed those that deform as far as slides exceed deformations.
 fn is_delicate(recovery: &Recovery, ending: &Ending) -> bool {
-    ending.judgement.leverage >= CANCELLING || recovery.soft || recovery.ready.rows.uneven
+    ending.judgement.leverage >= FAR || recovery.soft || recovery.ready.rows.uneven
 }
 
 /// True if a corrected answer replaced `ending`: it passes and its certificate is no worse. If the host, the time limit
