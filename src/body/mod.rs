@@ -44,7 +44,7 @@ pub use generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
 pub use given::Stiffness;
 pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER};
 pub use misfit::Misfit;
-pub use null_space::{Modes, NullSpaceInput, ROUNDING};
+pub use null_space::{Modes, NullSpaceInput};
 pub use pilots::Pilots;
 pub use plan::Plan;
 pub use rigid_modes::Coordinates;

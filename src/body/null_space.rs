@@ -55,7 +55,7 @@ impl NullSpaceInput {
 pub(super) const DEPENDENT: f64 = 1e-10;
 /// Bound of `|A z|` of a unit vector z that is 0 up to rounding, even if its terms are not larger: z of dofs without
 /// stiffness.
-pub const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Ratio of the largest to the mean error of a null vector.
 const PEAK: f64 = 8.0;
 

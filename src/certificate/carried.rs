@@ -9,11 +9,12 @@
 
 use std::collections::HashMap;
 
-use crate::body::{Stiffness, ROUNDING};
+use crate::body::Stiffness;
 use crate::certificate::grounded::each_entry;
 use crate::constraints::RowSet;
 use crate::error::Result;
 use crate::linalg::graph::joined;
+use crate::linalg::vector::NOISE;
 use crate::platform::memory::{filled, zeros};
 
 /// Rows give a carried unknown more than this times its own stiffness: with a smaller ratio kp / k an error of 1e-6 in a
@@ -98,7 +99,7 @@ impl Search<'_> {
             for i in (0..set.len()).filter(|&i| set.is_finite(i) && (self.holds)(kind, i)) {
                 row.clear();
                 // the rounding of a direction joins nothing
-                let rounding = ROUNDING * set.largest_entry(i);
+                let rounding = NOISE * set.largest_entry(i);
                 let entries = set.matrix.row(i).filter(|(_, b)| b.abs() > rounding);
                 row.extend(entries.map(|(j, b)| (j, b * b, b * b / self.stiffness[j])));
                 visit(&row, self.unit * set.compliance[i]);

@@ -60,7 +60,7 @@ impl Energies {
                 self.stored += stored;
                 self.constrained += work + stored;
                 self.constrained_size += work.abs() + stored;
-                self.rounding += force.abs() * rows.rounding.get(i).unwrap_or(&0.0);
+                self.rounding += force.abs() * rows.rounding(i);
             }
         }
     }

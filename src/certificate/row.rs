@@ -45,7 +45,7 @@ impl JudgedRow {
         let moved = rows.matrix.row_dot_abs(i, field.answer.u);
         let size = rows.matrix.row_dot_abs(i, &deformation.joined) + felt;
         let given = rows.rhs[i].abs() + rows.compliance[i] * force.abs();
-        let rounding = NOISE * (moved + given + cancelled) + rows.rounding.get(i).unwrap_or(&0.0);
+        let rounding = NOISE * (moved + given + cancelled) + rows.rounding(i);
         // without a scale the row cannot be checked
         let known = scale > 0.0 || empty;
         let force_limit = forces.limit_of(field, kind, i);

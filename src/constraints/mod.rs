@@ -72,6 +72,11 @@ impl RowSet {
         self.rhs.len()
     }
 
+    /// What was taken from the right-hand side of row i as rounding, length.
+    pub fn rounding(&self, i: usize) -> f64 {
+        self.rounding.get(i).copied().unwrap_or(0.0)
+    }
+
     /// A copy that shares the entries of the rows; `what` names it in errors.
     pub fn copied(&self, what: &str) -> Result<Self> {
         let (rhs, compliance) = (copied(&self.rhs, what)?, copied(&self.compliance, what)?);

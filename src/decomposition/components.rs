@@ -3,9 +3,9 @@
 
 use std::sync::Arc;
 
-use crate::body::ROUNDING;
 use crate::error::Result;
 use crate::linalg::graph::joined;
+use crate::linalg::vector::NOISE;
 use crate::linalg::Symmetric;
 use crate::model::Model;
 use crate::platform::memory::{filled, headroom, reserved};
@@ -100,12 +100,18 @@ pub fn slight(k: &Symmetric) -> Result<Vec<bool>> {
         let row = |i: usize| k.lower_row(i).filter(move |&(j, v)| j < i && v != 0.0);
         (0..k.order()).flat_map(move |i| row(i).map(move |(j, v)| (i, j, v.abs())))
     };
-    let is_noticed = |v: f64, j: usize| v > ROUNDING * k.diagonal(j);
+    let is_noticed = |v: f64, j: usize| v > NOISE * k.diagonal(j);
     let mut slight = Vec::new();
+    // K_ii <= N K_ij and K_ij^2 <= 2 K_ii K_jj allow no more than K_ii <= 2 N^2 K_jj: nearly every K has no such pair
+    let stiff = (0..k.order()).map(|i| k.diagonal(i)).filter(|k| *k > 0.0);
+    let (least, most) = stiff.fold((f64::INFINITY, 0.0f64), |(least, most), k| (least.min(k), most.max(k)));
+    if least > 4.0 * NOISE * NOISE * most {
+        return Ok(slight);
+    }
     for (a, b, v) in entries() {
         for (i, j) in [(a, b), (b, a)] {
             let [own, other] = [i, j].map(|of| k.diagonal(of));
-            if 0.0 < own && own <= ROUNDING * v && 0.0 < other && v / other <= 2.0 * own / v {
+            if 0.0 < own && own <= NOISE * v && 0.0 < other && v / other <= 2.0 * own / v {
                 if slight.is_empty() {
                     slight = filled(k.order(), false, WHAT)?;
                 }

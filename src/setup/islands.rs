@@ -156,9 +156,12 @@ impl Island {
         ] {
             let rows = model.rows(kind);
             let Members { numbers, rows: own } = members;
-            own.rhs.iter_mut().zip(&*numbers).for_each(|(c, &i)| *c = accuracy.rhs(kind, rows, i));
-            let taken = |(c, &i): (&f64, &usize)| if *c == rows.rhs[i] { 0.0 } else { rows.rhs[i].abs() };
-            own.rounding = own.rhs.iter().zip(&*numbers).map(taken).collect();
+            own.rounding.resize(numbers.len(), 0.0);
+            let of_own = own.rhs.iter_mut().zip(&mut own.rounding);
+            for ((c, taken), &i) in of_own.zip(&*numbers) {
+                *c = accuracy.rhs(kind, rows, i);
+                *taken = if *c == rows.rhs[i] { 0.0 } else { rows.rhs[i].abs() };
+            }
         }
         self.accuracy = accuracy;
         for (own, &number) in self.friction.nodes.iter_mut().zip(&self.friction.numbers) {
