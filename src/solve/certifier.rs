@@ -13,6 +13,32 @@ use crate::solve::finish::finish;
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
 
+/// What the certificate says about a point.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub enum Judged {
+    /// Nothing was judged, or the answer passes.
+    #[default]
+    Passed,
+    Missed,
+    /// Rows left out of the dual problem that the answer violates.
+    RowsReached(Vec<usize>),
+    /// The amplitudes of the motions with negative stiffness differ from those from which e was computed.
+    AmplitudesMoved,
+}
+
+/// What a run of the method assumes, and what its end point has to meet.
+#[derive(Default)]
+pub struct Assumed {
+    /// Rows left out of the dual problem.
+    pub far: Vec<bool>,
+    /// Amplitudes of the motions with negative stiffness from which e was computed.
+    pub amplitudes: Vec<f64>,
+    /// The end point is only the start of another run.
+    pub is_rough: bool,
+    /// Amplitudes must have settled, even if the certificate passes.
+    pub is_strict: bool,
+}
+
 /// Judges a point of the dual by the certificate of the answer recovered from it.
 pub struct Certifier<'a> {
     pub recovery: Recovery<'a>,
@@ -20,16 +46,9 @@ pub struct Certifier<'a> {
     accepted: Option<Accepted>,
     /// Time spent on recovery and certification.
     pub spent: Duration,
-    /// Rows left out of the dual problem, and those of them that the answer of the last point violates.
-    pub far: Vec<bool>,
-    pub reached: Vec<usize>,
-    /// Amplitudes of the motions with negative stiffness from which e was computed; those of the last point differ.
-    pub assumed: Vec<f64>,
-    pub unsettled: bool,
-    /// The point is only the start of another run.
-    pub is_rough: bool,
-    /// An accepted point must also have settled amplitudes.
-    pub is_strict: bool,
+    pub assumed: Assumed,
+    /// Of the last point.
+    pub judged: Judged,
     /// Ratio of the worst entry of the certificate of the last point that was refused.
     missed: Option<f64>,
 }
@@ -49,20 +68,8 @@ struct Accepted {
 
 impl<'a> Certifier<'a> {
     pub fn new(recovery: Recovery<'a>) -> Self {
-        let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
-        let (assumed, unsettled, is_rough, is_strict) = (Vec::new(), false, false, false);
-        Self {
-            recovery,
-            accepted: None,
-            spent,
-            far,
-            reached,
-            assumed,
-            unsettled,
-            is_rough,
-            is_strict,
-            missed: None,
-        }
+        let (assumed, judged) = (Assumed::default(), Judged::default());
+        Self { recovery, accepted: None, spent: Duration::ZERO, assumed, judged, missed: None }
     }
 
     /// The answer of a solution; the answer of the point accepted last is not computed again.
@@ -80,7 +87,7 @@ impl<'a> Certifier<'a> {
     fn differ(&self, alpha: &[f64]) -> bool {
         let negative = &self.recovery.ready.dual.negative;
         let (mut change, mut size) = (0.0, 0.0);
-        for ((mode, stiffness), was) in negative.iter().zip(&self.assumed) {
+        for ((mode, stiffness), was) in negative.iter().zip(&self.assumed.amplitudes) {
             change -= stiffness * (alpha[*mode] - was).powi(2);
             size -= stiffness * alpha[*mode].powi(2);
         }
@@ -90,7 +97,46 @@ impl<'a> Certifier<'a> {
     /// The rows left out that the displacement u violates.
     fn beyond(&self, u: &[f64]) -> Vec<usize> {
         let (rows, gaps) = (&self.recovery.ready.rows.scaled, &self.recovery.scaled.gaps.value);
-        (0..self.far.len()).filter(|&i| self.far[i] && rows.row_dot(i, u) > gaps[i]).collect()
+        let far = self.assumed.far.iter().enumerate().filter(|(_, far)| **far);
+        far.map(|(i, _)| i).filter(|&i| rows.row_dot(i, u) > gaps[i]).collect()
+    }
+
+    /// The answer of the point is kept if it passes.
+    fn judge(&mut self, x: &[f64], alpha: &[f64]) -> Result<Judged> {
+        let recovery = &self.recovery;
+        let deformed = recovery.deformed(x)?;
+        let mut recovered = recovery.recover(&deformed, x, alpha);
+        // more steps may remove an error that the certificate can otherwise excuse only by products with K+
+        let mut judgement = match self.missed.is_none() {
+            true => recovery.judged_strictly(&recovered)?,
+            false => recovery.judged(&recovered)?,
+        };
+        let mut alpha_at_rest = None;
+        if !judgement.certificate.passed() {
+            // a large motion that nothing resists may hide the other errors
+            let rested = recovery.at_rest(&recovered, x, &deformed, false)?;
+            let at_rest = rested.as_ref().map(|(rested, _)| recovery.judged(rested)).transpose()?;
+            match (rested, at_rest.filter(|at_rest| at_rest.certificate.passed())) {
+                (Some((rested, amplitudes)), Some(at_rest)) => {
+                    (recovered, judgement, alpha_at_rest) = (rested, at_rest, Some(amplitudes));
+                }
+                (rested, _) => {
+                    let reached = self.beyond(&rested.map_or(recovered, |(rested, _)| rested).u);
+                    self.missed = Some(judgement.certificate.worst());
+                    return Ok(match reached.is_empty() {
+                        // violated rows join first: without them no other improvement helps
+                        false => Judged::RowsReached(reached),
+                        true if self.differ(alpha) => Judged::AmplitudesMoved,
+                        true => Judged::Missed,
+                    });
+                }
+            }
+        }
+        self.missed = None;
+        let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
+        self.accepted = Some(Accepted { point, alpha_at_rest, deformed, recovered, judgement });
+        let unsettled = self.assumed.is_strict && self.differ(alpha);
+        Ok(if unsettled { Judged::AmplitudesMoved } else { Judged::Passed })
     }
 }
 
@@ -105,7 +151,7 @@ impl AcceptanceTest for Certifier<'_> {
         let mut distances = recovery.ready.distances(recovery.threads, &recovery.scaled.moved, x, alpha)?;
         let Gaps { dual, bounded, .. } = &recovery.scaled.gaps;
         let mut gaps = dual.clone();
-        for (i, _) in self.far.iter().enumerate().filter(|(_, far)| **far) {
+        for (i, _) in self.assumed.far.iter().enumerate().filter(|(_, far)| **far) {
             (distances[i], gaps[i]) = (0.0, 0.0);
         }
         let demanded = gaps.iter().zip(bounded).map(|(c, bounded)| if *bounded { c.min(0.0) } else { *c });
@@ -114,46 +160,15 @@ impl AcceptanceTest for Certifier<'_> {
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
-        self.unsettled = self.is_rough;
-        if self.is_rough {
+        if self.assumed.is_rough {
             self.accepted = None;
             return Ok(true);
         }
         interrupt::check()?;
-        let (begun, recovery) = (Instant::now(), &self.recovery);
-        let deformed = recovery.deformed(x)?;
-        let mut recovered = recovery.recover(&deformed, x, alpha);
-        // more steps may remove an error that the certificate can otherwise excuse only by products with K+
-        let first = self.missed.is_none();
-        let mut judgement = match first {
-            true => recovery.judged_strictly(&recovered)?,
-            false => recovery.judged(&recovered)?,
-        };
-        let (mut alpha_at_rest, mut reached) = (None, Vec::new());
-        if !judgement.certificate.passed() {
-            // a large motion that nothing resists may hide the other errors
-            if let Some((rested, amplitudes)) = recovery.at_rest(&recovered, x, &deformed, false)? {
-                let at_rest = recovery.judged(&rested)?;
-                if at_rest.certificate.passed() {
-                    (recovered, judgement, alpha_at_rest) = (rested, at_rest, Some(amplitudes));
-                } else {
-                    reached = self.beyond(&rested.u);
-                }
-            } else {
-                reached = self.beyond(&recovered.u);
-            }
-        }
+        let begun = Instant::now();
+        self.judged = self.judge(x, alpha)?;
         self.spent += begun.elapsed();
-        let passed = judgement.certificate.passed();
-        self.missed = Some(judgement.certificate.worst()).filter(|_| !passed);
-        if passed {
-            let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
-            self.accepted = Some(Accepted { point, alpha_at_rest, deformed, recovered, judgement });
-        }
-        self.reached = reached;
-        self.unsettled = (!passed || self.is_strict) && self.differ(alpha);
-        // violated rows join first: without them no other improvement helps
-        Ok(passed || !self.reached.is_empty() || self.unsettled)
+        Ok(self.judged != Judged::Missed)
     }
 
     fn missed(&self) -> Option<f64> {
@@ -177,13 +192,14 @@ impl AcceptanceTest for Certifier<'_> {
         let Ending { solution, deformed, recovered, judgement } = ending;
         let point = (copied(&solution.x, "forces")?, copied(&solution.alpha, "amplitudes")?);
         self.accepted = Some(Accepted { point, alpha_at_rest: None, deformed, recovered, judgement });
-        self.reached.clear();
+        self.judged = Judged::Passed;
         Ok(Some(Solution { verdict: Verdict::Solved, ..solution }))
     }
 
     fn length(&self) -> Option<f64> {
         let unit = self.recovery.ready.island.unit.sqrt();
-        let accepted = self.accepted.as_ref().filter(|_| self.reached.is_empty());
+        let reached = matches!(self.judged, Judged::RowsReached(_));
+        let accepted = self.accepted.as_ref().filter(|_| !reached);
         accepted.map(|accepted| accepted.judgement.length / unit)
     }
 }

@@ -16,6 +16,12 @@ pub struct MethodOptions<'a> {
     pub direct: Direct<'a>,
 }
 
+/// The forces of a run, and the rows whose forces do not respond to motions: open ones, and tangential ones that slip.
+pub struct Found {
+    pub solution: Solution,
+    pub held: Vec<bool>,
+}
+
 /// S10 of docs/method.md: solves the dual. After proportioning follow proportioning without preconditioner and SMALBE-M,
 /// each from the end point of the first run and each followed by the direct method; if there are few rows, a finite
 /// method is last.

@@ -15,13 +15,12 @@ use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::{Contradictions, Unheld};
 use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
-use crate::solve::friction::{nearest_forces, solve_with_friction};
 use crate::solve::interruptible::Interruptible;
-use crate::solve::negative::solve_with_negative_motions;
 use crate::solve::paper::{parameters, HostUnits};
 use crate::solve::presolve::presolve;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 use crate::solve::report::Outcome;
+use crate::solve::rounds::solve_in_rounds;
 use crate::solve::scaled::Scaled;
 use crate::solve::slides::Slide;
 
@@ -68,10 +67,6 @@ enum Tried {
     /// The answer of the cleaned G': by the host's rows its forces leave a small part of the load along the motions that rest.
     Leaves {
         x: Vec<f64>,
-    },
-    /// As `NotHeld`, with friction.
-    NotHeldByFriction {
-        far: Vec<bool>,
     },
 }
 
@@ -127,26 +122,15 @@ fn solve_held(
                 start = left.x;
             }
             Tried::NotHeld { far } => {
-                let (data, ready) = (case.data()?, case.ready);
-                let least = interrupt::part(DIAGNOSIS, || Unheld::least(&data, ready, &dual, &far))?;
+                let least = interrupt::part(DIAGNOSIS, || Unheld::least(case, &dual, &far))?;
                 if let Some(error) = least.proof(case, &dual)? {
                     return Err(error);
                 }
                 let share = least.share;
-                let relative = interrupt::part(DIAGNOSIS, || Unheld::relative(&data, ready, &dual, &far))?;
-                let relative = relative.filter(Unheld::is_little);
-                let left = relative.unwrap_or(least);
+                let relative = interrupt::part(DIAGNOSIS, || Unheld::relative(case, &dual, &far))?;
+                let left = relative.filter(Unheld::is_little).unwrap_or(least);
                 dual.take(case, &left.x, left.load_to_take(share), share)?;
                 dual.along = left.amplitudes;
-                start = left.x;
-            }
-            Tried::NotHeldByFriction { far } => {
-                let (x, rest) = interrupt::part(DIAGNOSIS, || nearest_forces(case.ready, &dual, &far))?;
-                let left = Unheld::of(&case.data()?, case.ready, &dual, x, &rest);
-                if let Some(error) = left.proof(case, &dual)? {
-                    return Err(error);
-                }
-                dual.take(case, &left.x, left.load_to_take(left.share), left.share)?;
                 start = left.x;
             }
         }
@@ -182,27 +166,11 @@ fn attempt(
         Some(given) if given.units == Units::Printed && !case.has_friction() => {
             HostUnits::new(case, &dual.gaps, given)?.solve(qp, start, &mut judge, steps)?
         }
-        _ if case.has_friction() => {
-            solve_with_friction(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?
-        }
-        _ => solve_with_negative_motions(
-            case,
-            &MethodOptions { settings, direct },
-            qp,
-            start,
-            &mut judge,
-            steps,
-        )?,
+        _ => solve_in_rounds(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
     };
-    let solution = match solution {
-        Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {
-            return Ok(match case.has_friction() {
-                true => Tried::NotHeldByFriction { far: judge.far },
-                false => Tried::NotHeld { far: judge.far },
-            });
-        }
-        solution => solution,
-    };
+    if matches!(solution.verdict, Verdict::Infeasible { .. }) && dual.unheld.is_none() {
+        return Ok(Tried::NotHeld { far: judge.assumed.far });
+    }
     let (judging, recovering) = (judge.spent, Instant::now());
     // an accepted answer is returned with its displacements and its certificate
     let mut ending = interrupt::never(|| judge.ending(solution))?;

@@ -24,6 +24,7 @@ mod report;
 mod response;
 mod rest;
 mod rigid;
+mod rounds;
 mod scaled;
 mod slides;
 mod sliding;

@@ -2,81 +2,90 @@
 //! travel that far: if nothing else holds a load, if the answer without these rows violates them, or if there is no answer
 //! without them.
 
-use crate::error::Result;
-use crate::progress::Steps;
-use crate::qp::{Counts, DirectOnRows, Judged, Qp, Restricted, Solution, Verdict};
-use crate::solve::certifier::Certifier;
+use crate::error::{Error, Kind, Result};
+use crate::qp::{Solution, Verdict};
+use crate::solve::case::Case;
+use crate::solve::certifier::Judged;
 use crate::solve::diagnosis::Unheld;
-use crate::solve::fallback::{gave_up, solve_dual, MethodOptions};
+use crate::solve::fallback::gave_up;
 use crate::solve::presolve::FAR;
+use crate::solve::scaled::Scaled;
 
-/// Solves the dual for the rows that matter; the forces of the rows left out are 0.
-pub fn solve_near(
-    means: &MethodOptions,
-    qp: Qp,
-    start: &[f64],
-    judge: &mut Certifier,
-    steps: &mut Steps,
-) -> Result<Solution> {
-    let (ready, scaled) = (judge.recovery.ready, judge.recovery.scaled);
-    let (gaps, mut far) = (&scaled.gaps.value, scaled.gaps.far.clone());
-    let (mut start, mut before, mut given_up, mut last) = (start.to_vec(), Counts::default(), None, None);
-    let comes_in = |far: &[bool]| (0..far.len()).any(|i| far[i] && gaps[i] < f64::INFINITY);
-    while far.contains(&true) {
-        let is_last = !comes_in(&far);
-        let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
-        let (near, block) = (Restricted::new(qp, &rows), DirectOnRows { whole: means.direct, rows: &rows });
-        steps.set_bounded(near.bounded());
-        judge.far.clone_from(&far);
-        judge.reached.clear();
-        let means = MethodOptions { direct: block.direct(), ..*means };
-        let mut judged = Judged { whole: judge, on: &near };
-        let found = solve_dual(&means, near.qp(), &near.start(&start), &mut judged, steps);
-        let solution = or_last(found.map(|solution| near.whole(solution)), last.take())?;
-        before = before + solution.counts;
-        match &solution.verdict {
-            _ if is_last => {
-                let solution = given_up.filter(|_| gave_up(&solution)).unwrap_or(solution);
-                return Ok(Solution { counts: before, ..solution });
-            }
-            Verdict::Infeasible { .. }
-                if Unheld::least(&judge.recovery.data, ready, scaled, &far)?.is_little() =>
-            {
-                return Ok(Solution { counts: before, ..solution });
-            }
-            Verdict::Infeasible { .. } | Verdict::Unbounded { .. } => take_in_nearest(&mut far, gaps),
-            _ if judge.reached.is_empty() && gave_up(&solution) => {
-                take_in_nearest(&mut far, gaps);
-                given_up.get_or_insert(solution);
-            }
-            _ if judge.reached.is_empty() => return Ok(Solution { counts: before, ..solution }),
-            _ => {
-                judge.reached.iter().for_each(|&i| far[i] = false);
-                start.clone_from(&solution.x);
-                last = Some(solution);
-            }
+/// The rows left out, and what the runs without them have found.
+pub struct Near<'a> {
+    case: Case<'a>,
+    scaled: &'a Scaled,
+    pub far: Vec<bool>,
+    /// The first solution of a run that gave up although rows were left out.
+    given_up: Option<Solution>,
+}
+
+/// What follows a run.
+pub enum Next {
+    /// Rows have joined: another run, from the forces of this solution, or from those of the run before.
+    Run(Option<Solution>),
+    Ended(Solution),
+}
+
+impl<'a> Near<'a> {
+    pub fn new(case: Case<'a>, scaled: &'a Scaled) -> Self {
+        Self { case, scaled, far: scaled.gaps.far.clone(), given_up: None }
+    }
+
+    /// The rows of the dual problem.
+    pub fn rows(&self) -> Vec<usize> {
+        (0..self.far.len()).filter(|&i| !self.far[i]).collect()
+    }
+
+    /// The loads or assumed amplitudes have changed.
+    pub fn forget(&mut self) {
+        self.given_up = None;
+    }
+
+    /// Rows with a finite gap are left out.
+    fn comes_in(&self) -> bool {
+        (0..self.far.len()).any(|i| self.far[i] && self.scaled.gaps.value[i] < f64::INFINITY)
+    }
+
+    /// Whether bodies that slide without end on these rows may be stopped by others: then the nearest join.
+    pub fn may_stop(&mut self, error: &Error) -> bool {
+        let may_stop = error.kind == Kind::Slides && self.comes_in();
+        if may_stop {
+            self.take_in_nearest();
         }
+        may_stop
     }
-    steps.set_bounded(qp.bounded);
-    judge.far.clear();
-    judge.reached.clear();
-    let solution = or_last(solve_dual(means, qp, &start, judge, steps), last)?;
-    let counts = before + solution.counts;
-    let solution = given_up.filter(|_| gave_up(&solution)).unwrap_or(solution);
-    Ok(Solution { counts, ..solution })
-}
 
-/// The new solution or, if the host or the time limit has stopped it, the solution of the previous round: its work is
-/// already counted.
-pub fn or_last(found: Result<Solution>, last: Option<Solution>) -> Result<Solution> {
-    match last {
-        Some(last) => Solution { counts: Counts::default(), ..last }.unless(found),
-        None => found,
+    /// What follows this solution, of which the certificate has said `judged`.
+    pub fn after(&mut self, solution: Solution, judged: &Judged) -> Result<Next> {
+        if let Judged::RowsReached(rows) = judged {
+            rows.iter().for_each(|&i| self.far[i] = false);
+            return Ok(Next::Run(Some(solution)));
+        }
+        if !self.comes_in() {
+            let first = self.given_up.take().filter(|_| gave_up(&solution));
+            return Ok(Next::Ended(first.unwrap_or(solution)));
+        }
+        match &solution.verdict {
+            Verdict::Infeasible { .. } => {
+                if Unheld::least(self.case, self.scaled, &self.far)?.is_little() {
+                    return Ok(Next::Ended(solution));
+                }
+            }
+            Verdict::Unbounded { .. } => {}
+            _ if gave_up(&solution) => drop(self.given_up.get_or_insert(solution)),
+            _ => return Ok(Next::Ended(solution)),
+        }
+        self.take_in_nearest();
+        Ok(Next::Run(None))
     }
-}
 
-/// Takes in the nearest far row and all rows up to `FAR` times as far; rows with infinite gaps stay out.
-pub fn take_in_nearest(far: &mut [bool], gaps: &[f64]) {
-    let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
-    far.iter_mut().zip(gaps).for_each(|(far, gap)| *far &= !(*gap <= FAR * nearest && *gap < f64::INFINITY));
+    /// Takes in the nearest far row and all rows up to `FAR` times as far; rows with infinite gaps stay out.
+    fn take_in_nearest(&mut self) {
+        let (far, gaps) = (&mut self.far, &self.scaled.gaps.value);
+        let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
+        far.iter_mut()
+            .zip(gaps)
+            .for_each(|(far, gap)| *far &= !(*gap <= FAR * nearest && *gap < f64::INFINITY));
+    }
 }

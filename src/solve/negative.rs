@@ -15,22 +15,18 @@
 //! rho.
 
 use crate::error::{Error, Kind, Proof, Result};
-use crate::linalg::vector::{axpy, dot, norm_max, NOISE};
-use crate::model::Settings;
-use crate::progress::Steps;
-use crate::qp::{AcceptanceTest, Counts, Qp, Solution, Verdict};
+use crate::linalg::vector::{axpy, dot, norm, norm_max, NOISE};
+use crate::linalg::Matrix;
+use crate::qp::{Qp, Solution, Verdict};
 use crate::solve::case::Case;
-use crate::solve::certifier::Certifier;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::feedback::{Feedback, NegativeMotions};
-use crate::solve::near::{or_last, solve_near};
+use crate::solve::friction::nearest_forces;
 use crate::solve::recovery::Recovery;
 use crate::solve::sliding::Sliding;
 
 /// Limit of rounds.
 const ROUNDS: usize = 60;
-/// `tolerance` of the first round, which only has to find the active rows: another round follows.
-const ROUGH: f64 = 1e-5;
 /// After this number of rounds on one face, an answer that passes the certificate is accepted although its amplitudes
 /// still change.
 const STRICT: usize = 2;
@@ -38,37 +34,44 @@ const STRICT: usize = 2;
 const STRICT_ALONE: usize = 20;
 /// After this number of Newton rounds on one face, only rounding is left between the rounds.
 const MENDED: usize = 4;
+/// With friction, a trial is given up if it goes beyond the last round by less than this part of its change.
+const SHORT: f64 = 0.1;
 /// Two energies are equal if they differ by less than this part of their terms.
 const SAME: f64 = 1e-9;
 
 /// Where a round begins.
-struct Step {
-    b: Vec<f64>,
-    x: Vec<f64>,
+pub struct Step {
+    pub b: Vec<f64>,
+    pub x: Vec<f64>,
     /// The step has ignored open rows: its answer may have more energy.
     is_trial: bool,
 }
 
 /// An answer of a round.
 struct Round<'a> {
+    b: Vec<f64>,
     x: Vec<f64>,
     alpha: Vec<f64>,
     held: Vec<bool>,
     /// `S-^1/2 a`, and its difference from b of the round.
     next: Vec<f64>,
     change: Vec<f64>,
-    /// `1/2 u'K u - f'u` up to a constant, and the size of its terms.
+    /// What falls from round to round: `1/2 u'K u - f'u` up to a constant or, with friction, which has no energy, |change|.
+    /// And the size of its terms.
     energy: f64,
     terms: f64,
     is_rough: bool,
     /// None if the face is too large for dense factors.
     feedback: Option<Feedback<'a>>,
+    /// With friction, `(I - P)^-1` as far as this and earlier rounds on this face show it: P of `feedback` does not know that
+    /// forces at their bounds follow normal forces and slips.
+    inverse: Matrix,
 }
 
 /// What the rounds so far have found.
 #[derive(Default)]
-struct Known<'a> {
-    rounds: usize,
+pub struct Known<'a> {
+    pub rounds: usize,
     /// Successive rounds on one face.
     same: usize,
     /// The last round, not counting trials whose energy has risen.
@@ -76,7 +79,7 @@ struct Known<'a> {
 }
 
 /// What follows a round.
-enum Next {
+pub enum Next {
     Step(Step),
     /// Only rounding is left between rounds: the answer is corrected by the data of the host; if that fails, this step
     /// follows.
@@ -85,76 +88,28 @@ enum Next {
 }
 
 /// What the rounds are judged with.
-struct Search<'a, 'b> {
-    case: Case<'a>,
-    means: &'b MethodOptions<'a>,
-    qp: Qp<'a>,
-    negative: &'b NegativeMotions,
-    recovery: &'b Recovery<'a>,
-}
-
-/// Solves the dual of (10)-(11), with rounds if there are motions with negative stiffness.
-pub fn solve_with_negative_motions<'a>(
-    case: Case<'a>,
-    means: &MethodOptions<'a>,
-    qp: Qp<'a>,
-    start: &[f64],
-    judge: &mut Certifier<'a>,
-    steps: &mut Steps,
-) -> Result<Solution> {
-    let negative = NegativeMotions::of(case.ready);
-    if negative.modes.is_empty() {
-        return solve_near(means, qp, start, judge, steps);
-    }
-    let rough = Settings { tolerance: means.settings.tolerance.max(ROUGH), ..means.settings.clone() };
-    let (mut step, mut counts) = (Step::first(&negative, start.to_vec()), Counts::default());
-    let (mut known, mut before) = (Known::default(), None);
-    loop {
-        judge.is_rough = known.rounds == 0 && means.direct.limit > 0;
-        judge.is_strict = known.is_strict();
-        judge.assumed = negative.amplitudes(&step.b);
-        let settings = if judge.is_rough { &rough } else { means.settings };
-        let e = negative.resultants(qp.e, &step.b);
-        let with = MethodOptions { settings, ..*means };
-        let found = solve_near(&with, Qp { e: &e, ..qp }, &step.x, judge, steps);
-        let mut solution = or_last(found, before.take())?;
-        counts = counts + solution.counts;
-        solution.counts = counts;
-        if let Verdict::StepLimit | Verdict::TimeLimit | Verdict::Cancelled = solution.verdict {
-            return Ok(solution);
-        }
-        let search = Search { case, means, qp, negative: &negative, recovery: &judge.recovery };
-        let next = match &solution.verdict {
-            Verdict::Solved => search.after(&mut known, &step, &solution, (judge.unsettled, judge.is_rough)),
-            _ => search.without_answer(&mut known, &step, &solution),
-        };
-        match next {
-            Ok(Next::Step(next)) => step = next,
-            Ok(Next::Mend(next)) => match judge.mended(&solution) {
-                Ok(Some(mended)) => return Ok(mended),
-                Ok(None) => step = next,
-                Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
-            },
-            Ok(Next::End(verdict)) => return Ok(Solution { verdict, ..solution }),
-            Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
-        }
-        before = Some(solution);
-    }
+pub struct Search<'a, 'b> {
+    pub case: Case<'a>,
+    pub means: &'b MethodOptions<'a>,
+    pub qp: Qp<'a>,
+    pub negative: &'b NegativeMotions,
+    pub recovery: &'b Recovery<'a>,
 }
 
 impl Step {
     /// a = 0
-    fn first(negative: &NegativeMotions, x: Vec<f64>) -> Self {
+    pub fn first(negative: &NegativeMotions, x: Vec<f64>) -> Self {
         Self { b: vec![0.0; negative.modes.len()], x, is_trial: false }
     }
 }
 
 impl Known<'_> {
     /// An accepted answer must also have settled amplitudes.
-    fn is_strict(&self) -> bool {
+    pub fn is_strict(&self) -> bool {
         match &self.last {
-            Some(Round { feedback: None, .. }) => self.rounds < STRICT_ALONE,
-            _ => self.same < STRICT,
+            Some(Round { feedback: Some(_), inverse, .. }) if inverse.cols == 0 => self.same < STRICT,
+            Some(_) => self.rounds < STRICT_ALONE,
+            None => true,
         }
     }
 }
@@ -168,74 +123,119 @@ impl Round<'_> {
 
 impl<'a> Search<'a, '_> {
     /// What follows a round with an answer; an error is the proof that there is no minimum.
-    fn after(
+    pub fn after(
         &self,
         known: &mut Known<'a>,
         step: &Step,
-        solution: &Solution,
+        found: (&Solution, Vec<bool>),
         (unsettled, is_rough): (bool, bool),
     ) -> Result<Next> {
-        let round = Round { is_rough, ..self.round(step, solution)? };
+        let mut round = Round { is_rough, ..self.round(step, found)? };
         known.rounds += 1;
         let is_same = known.last.as_ref().is_some_and(|last| last.held == round.held);
         known.same = if is_same { known.same + 1 } else { 0 };
+        round.inverse = self.inverse(&round, known.last.as_ref().filter(|_| is_same))?;
         let falling = self.falling(&round, known.last.as_ref().filter(|_| is_same))?;
         match &falling {
             Some((motion, rate)) if !unsettled => return Err(indefinite(self.case, &motion.v, *rate)),
             _ if !unsettled => return Ok(Next::End(Verdict::Solved)),
-            None if known.same > MENDED && round.feedback.is_some() => {
+            None if known.same > MENDED && round.feedback.is_some() && !self.recovery.friction => {
                 return Ok(Next::End(Verdict::Stalled))
             }
             _ if known.rounds >= ROUNDS => return Ok(Next::End(Verdict::Stalled)),
             _ => {}
         }
         if let Some(last) = known.last.as_ref().filter(|last| step.is_trial && round.is_above(last)) {
-            return Ok(Next::Step(self.back(last)?));
+            return Ok(Next::Step(self.back(last, &step.b)?));
         }
         let next = match falling {
             Some((motion, rate)) => self.along(&round, &motion, rate)?,
             None => self.settled(&round)?,
         };
-        let is_to_mend = next.is_trial && known.same == MENDED;
+        let is_to_mend = next.is_trial && known.same == MENDED && !self.recovery.friction;
         known.last = Some(round);
         Ok(if is_to_mend { Next::Mend(next) } else { Next::Step(next) })
     }
 
     /// What follows a round without an answer: no forces balance its load if the energy falls without end.
-    fn without_answer(&self, known: &mut Known<'a>, step: &Step, solution: &Solution) -> Result<Next> {
+    pub fn without_answer(&self, known: &mut Known<'a>, step: &Step, solution: &Solution) -> Result<Next> {
         if known.rounds == 0 {
             return Ok(Next::End(solution.verdict.clone()));
         }
         known.rounds += 1;
+        if let (Some(last), true) = (&known.last, step.is_trial && self.recovery.friction) {
+            return Ok(Next::Step(self.back(last, &step.b)?));
+        }
         if let Verdict::Infeasible { .. } = solution.verdict {
             let e = self.negative.resultants(self.qp.e, &step.b);
-            let left = Qp { e: &e, ..self.qp }.left(&solution.x);
-            let motion = Sliding::of(self.recovery, vec![0.0; solution.x.len()], left)?;
-            let bounded = self.qp.bounded;
-            let u = vec![0.0; motion.v.len()];
-            if motion.falls(self.recovery, bounded)? && motion.reach(self.recovery, &u, bounded).is_infinite()
-            {
+            if let Some(motion) = self.unstopped(Qp { e: &e, ..self.qp }, &solution.x)? {
                 return Err(indefinite(self.case, &motion.v, f64::INFINITY));
             }
         }
         match &known.last {
             _ if known.rounds >= ROUNDS || !step.is_trial => Ok(Next::End(Verdict::Stalled)),
-            Some(last) if !last.is_rough => Ok(Next::Step(self.back(last)?)),
+            Some(last) if !last.is_rough => Ok(Next::Step(self.back(last, &step.b)?)),
             _ => Ok(Next::Step(Step::first(self.negative, solution.x.clone()))),
         }
     }
 
-    fn round(&self, step: &Step, solution: &Solution) -> Result<Round<'a>> {
+    /// The motion along which forces x leave a load that none hold, if the energy falls along it without end.
+    fn unstopped(&self, qp: Qp, x: &[f64]) -> Result<Option<Sliding>> {
+        let (ready, scaled, bounded) = (self.case.ready, self.recovery.scaled, qp.bounded);
+        if !self.recovery.friction {
+            let motion = Sliding::of(self.recovery, vec![0.0; x.len()], qp.left(x))?;
+            let stops = |motion: &Sliding| motion.reach(self.recovery, &vec![0.0; motion.v.len()], bounded);
+            let falls = motion.falls(self.recovery, bounded)? && stops(&motion).is_infinite();
+            return Ok(falls.then_some(motion));
+        }
+        let (rows, sizes) = ((0..x.len()).collect::<Vec<_>>(), ready.dual.sizes_of_modes());
+        let (_, rest) = nearest_forces(ready, qp, &scaled.gaps, &rows, &sizes)?;
+        let left = rest.iter().zip(&sizes).map(|(e, size)| size * size * e).collect();
+        let motion = Sliding::of(self.recovery, vec![0.0; x.len()], left)?;
+        Ok(motion.falls_beside_friction(self.recovery)?.then_some(motion))
+    }
+
+    /// `(I - P)^-1` of a round with friction; `last` had the same face: then the difference of both rounds corrects it
+    /// (Broyden).
+    fn inverse(&self, round: &Round, last: Option<&Round>) -> Result<Matrix> {
+        let d = if self.recovery.friction { self.negative.modes.len() } else { 0 };
+        let mut inverse = Matrix::from_fn(d, d, |i, j| f64::from(i == j))?;
+        if let Some(last) = last.filter(|_| d > 0) {
+            inverse.data.copy_from_slice(&last.inverse.data);
+            let minus = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x - y).collect::<Vec<_>>();
+            let (mut moved, fell) = (minus(&round.b, &last.b), minus(&last.change, &round.change));
+            let along = inverse.mul_transposed(&moved);
+            let slope = dot(&along, &fell);
+            inverse.mul_add(-1.0, &fell, &mut moved);
+            if slope != 0.0 {
+                (0..d).for_each(|j| axpy(along[j] / slope, &moved, inverse.col_mut(j)));
+            }
+        } else if let Some(feedback) = round.feedback.as_ref().filter(|feedback| feedback.rate() < 1.0) {
+            for j in 0..d {
+                let unit: Vec<f64> = (0..d).map(|i| f64::from(i == j)).collect();
+                inverse.col_mut(j).copy_from_slice(&feedback.settled(&unit, &unit));
+            }
+        }
+        Ok(inverse)
+    }
+
+    fn round(&self, step: &Step, (solution, held): (&Solution, Vec<bool>)) -> Result<Round<'a>> {
         let Solution { x, alpha, .. } = solution;
-        let held = self.qp.at_bound(x);
-        let next = self.negative.forced(alpha);
-        let change = next.iter().zip(&step.b).map(|(next, b)| next - b).collect();
-        let parts = [0.5 * dot(self.qp.b, x), -0.5 * dot(self.qp.e, alpha), 0.5 * dot(&next, &step.b)];
-        let negative = -0.5 * dot(&next, &next);
-        let energy = parts.iter().sum::<f64>() + negative;
-        let terms = parts.iter().map(|part| part.abs()).sum::<f64>() - negative;
+        let next: Vec<f64> = self.negative.forced(alpha);
+        let change: Vec<f64> = next.iter().zip(&step.b).map(|(next, b)| next - b).collect();
+        let parts = match self.recovery.friction {
+            true => vec![norm(&change)],
+            false => {
+                let dual = [0.5 * dot(self.qp.b, x), -0.5 * dot(self.qp.e, alpha)];
+                [dual, [0.5 * dot(&next, &step.b), -0.5 * dot(&next, &next)]].concat()
+            }
+        };
+        let energy = parts.iter().sum::<f64>();
+        let terms = parts.iter().map(|part| part.abs()).sum::<f64>();
         let feedback = Feedback::of(self.means.direct, self.qp, &held, self.negative)?;
         Ok(Round {
+            inverse: Matrix::zeros(0, 0)?,
+            b: step.b.clone(),
             x: x.clone(),
             alpha: alpha.clone(),
             held,
@@ -287,15 +287,27 @@ impl<'a> Search<'a, '_> {
         let Some(feedback) = round.feedback.as_ref().filter(|feedback| feedback.rate() < 1.0) else {
             return Ok(Step { b: round.next.clone(), x: round.x.clone(), is_trial: false });
         };
+        if self.recovery.friction {
+            let mut b = round.b.clone();
+            round.inverse.mul_add(1.0, &round.change, &mut b);
+            return Ok(Step { b, x: round.x.clone(), is_trial: true });
+        }
         let b = feedback.settled(&round.next, &round.change);
         let (x, _) = feedback.point(self.qp, &self.negative.resultants(self.qp.e, &b))?;
         let x = (0..x.len()).map(|i| if self.qp.bounded[i] { x[i].max(0.0) } else { x[i] }).collect();
         Ok(Step { b, x, is_trial: true })
     }
 
-    /// The Newton step of [`settled`](Self::settled), shortened so that open rows stay open.
-    fn back(&self, round: &Round) -> Result<Step> {
+    /// The Newton step of [`settled`](Self::settled), shortened so that open rows stay open; with friction, half of what the
+    /// trial `failed` went beyond the amplitudes of the round.
+    fn back(&self, round: &Round, failed: &[f64]) -> Result<Step> {
         let plain = Step { b: round.next.clone(), x: round.x.clone(), is_trial: false };
+        if self.recovery.friction {
+            let b: Vec<f64> = round.next.iter().zip(failed).map(|(next, b)| 0.5 * (next + b)).collect();
+            let beyond: Vec<f64> = round.next.iter().zip(&b).map(|(next, b)| b - next).collect();
+            let is_trial = norm(&beyond) > SHORT * norm(&round.change);
+            return Ok(if is_trial { Step { b, is_trial, ..plain } } else { plain });
+        }
         let Some(feedback) = &round.feedback else { return Ok(plain) };
         let b = feedback.settled(&round.next, &round.change);
         let (mut x, mut alpha) = feedback.point(self.qp, &self.negative.resultants(self.qp.e, &b))?;

@@ -3,9 +3,11 @@
 
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{axpy, norm_max, NOISE};
+use crate::linalg::vector::{axpy, norm_max, weighted_norm, NOISE};
 use crate::linalg::Csr;
 use crate::platform::memory::{filled, zeros};
+use crate::solve::diagnosis::resistance;
+use crate::solve::gaps::Gaps;
 use crate::solve::recovery::Recovery;
 
 const WHAT: &str = "a motion along closed rows";
@@ -39,10 +41,16 @@ impl Sliding {
         }
     }
 
-    /// `v'K v + x'C x <= 0` up to rounding by the matrices of the host, and by more than the energy from the motion of the rows F:
-    /// without resistance the load alone decides how far the motion goes.
-    pub fn falls(&self, recovery: &Recovery, held: &[bool]) -> Result<bool> {
-        let (rows, unit) = (&recovery.ready.rows, recovery.ready.island.unit);
+    /// `v'K v < 0` by the matrices of the host, and no forces within the cones of the rows resist v.
+    pub fn falls_beside_friction(&self, recovery: &Recovery) -> Result<bool> {
+        let (energy, terms) = self.energy(recovery)?;
+        let size = weighted_norm(&self.v, |j| recovery.ready.rows.metric[j]);
+        Ok(energy.value() < -NOISE * terms && resistance(recovery.ready, &self.v) <= CLOSED * size)
+    }
+
+    /// `v'K v` and the size of its terms, in units of 2^p.
+    fn energy(&self, recovery: &Recovery) -> Result<(Twofold, f64)> {
+        let unit = recovery.ready.island.unit;
         let mut image = filled(self.v.len(), Twofold::default(), WHAT)?;
         for body in &recovery.data.bodies {
             body.stiffness.add_twofold(1.0 / unit, &self.v[body.range()], &mut image[body.range()])?;
@@ -52,6 +60,14 @@ impl Sliding {
             energy.add_product(*v, image.value());
             terms += (v * image.value()).abs();
         }
+        Ok((energy, terms))
+    }
+
+    /// `v'K v + x'C x <= 0` up to rounding by the matrices of the host, and by more than the energy from the motion of the rows F:
+    /// without resistance the load alone decides how far the motion goes.
+    pub fn falls(&self, recovery: &Recovery, held: &[bool]) -> Result<bool> {
+        let rows = &recovery.ready.rows;
+        let (mut energy, terms) = self.energy(recovery)?;
         let mut moved = 0.0;
         for i in (0..rows.groups()).filter(|&i| !held[i]) {
             let (given, compliance) = (rows.matrix.row_dot(i, &self.v), rows.compliance[i]);
@@ -67,9 +83,9 @@ impl Sliding {
 
     /// The largest t for which `u + t v` violates no row marked in `held`; infinite if no such row stops the motion.
     pub fn reach(&self, recovery: &Recovery, u: &[f64], held: &[bool]) -> f64 {
-        let (rows, gaps) = (&recovery.ready.rows.scaled, &recovery.scaled.gaps.value);
+        let (rows, Gaps { value: gaps, bounded, .. }) = (&recovery.ready.rows.scaled, &recovery.scaled.gaps);
         let mut reach = f64::INFINITY;
-        for i in (0..rows.rows()).filter(|&i| held[i]) {
+        for i in (0..rows.rows()).filter(|&i| held[i] && bounded[i]) {
             let closing = rows.row_dot(i, &self.v);
             if closing > STILL * self.size(rows, i) {
                 reach = reach.min((gaps[i] - rows.row_dot(i, u)).max(0.0) / closing);

@@ -172,3 +172,35 @@ fn a_far_row_that_the_answer_would_go_through_takes_part() {
     near(problem.multipliers(RowKind::Inequality).unwrap(), &[1.0, 1.0 - 2.0 * (200.0 - u)]);
     near(problem.multipliers(RowKind::Tangential).unwrap(), &[0.1]);
 }
+
+/// A bar of two points on the ground, its ends held up by a spring of stiffness 1 that both share, pressed by 5 and pushed by 5 at
+/// each end where friction holds 2.5: it slides to a stop at its right end, which carries 5 however far it is.
+#[test]
+fn what_slides_rests_at_a_stop_however_far_it_is() {
+    for gap in [1e-3, 0.1, 1.0, 10.0, 1e3, 1e6] {
+        let mut stiffness = Csr::empty(4);
+        stiffness.push_row(&[(0, 1e3), (2, -1e3)]);
+        stiffness.push_row(&[]);
+        stiffness.push_row(&[(0, -1e3), (2, 1e3)]);
+        stiffness.push_row(&[]);
+        let modes = [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]];
+        let body = Body {
+            stiffness,
+            null_space: Some(modes.iter().map(|mode| mode.to_vec()).collect()),
+            load: vec![5.0, -5.0, 5.0, -5.0],
+            coordinates: [[0.0; 3], [0.0; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]].to_vec(),
+            node: vec![1, 1, 2, 2],
+            direction: vec![1, 2, 1, 2],
+        };
+        let mut deck = Deck::new("bar", vec![body]);
+        for node in [0, 1] {
+            deck.contact.push(&[(2 * node + 1, -1.0)], 0.0);
+            deck.friction.push(Some(node), &[&[(2 * node, 1.0)]], 0.5, 0.0);
+        }
+        deck.contact.push(&[(2, 1.0)], gap);
+        deck.equalities.push_compliant(&[(1, 0.5), (3, 0.5)], 0.0, 1.0);
+        let problem = solved(&deck);
+        near(problem.multipliers(RowKind::Inequality).unwrap(), &[5.0, 5.0, 5.0]);
+        near(problem.multipliers(RowKind::Tangential).unwrap(), &[2.5, 2.5]);
+    }
+}

@@ -3,6 +3,7 @@
 mod battery;
 mod by_hand;
 mod drawn;
+mod driven;
 mod enumeration;
 #[path = "../support/hand_over.rs"]
 mod hand_over;

@@ -11,6 +11,7 @@ use crate::platform::memory::zeros;
 use crate::qp::{weighted, Restricted};
 use crate::setup::Ready;
 use crate::solve::case::Case;
+use crate::solve::friction::nearest_forces;
 use crate::solve::scaled::Scaled;
 
 /// Ratio of the smallest to the largest load that is distinguished; a body without load counts as having the smallest.
@@ -50,27 +51,35 @@ pub struct Unheld {
 impl Unheld {
     /// For the forces that leave the least of the load, |D R c|_{D^-1}; the forces of rows marked in `far` are 0 (empty:
     /// no far rows).
-    pub fn least(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<Self> {
-        Self::nearest(data, ready, scaled, far, &ready.dual.sizes_of_modes())
+    pub fn least(case: Case, scaled: &Scaled, far: &[bool]) -> Result<Self> {
+        Self::nearest(case, scaled, far, &case.ready.dual.sizes_of_modes())
     }
 
     /// For the forces that leave the smallest part of each body's own load, so that rounding of a large load does not act
     /// on a body with a small one; `None` without loads.
-    pub fn relative(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<Option<Self>> {
-        let sizes = ready.dual.sizes_of_loads(&free(data, scaled.load.clone()), &ready.rows.metric);
+    pub fn relative(case: Case, scaled: &Scaled, far: &[bool]) -> Result<Option<Self>> {
+        let ready = case.ready;
+        let load = free(&case.data()?, scaled.load.clone());
+        let sizes = ready.dual.sizes_of_loads(&load, &ready.rows.metric);
         let most = norm_max(&sizes);
         let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(RANGE * most)).collect();
-        (most > 0.0).then(|| Self::nearest(data, ready, scaled, far, &weights)).transpose()
+        (most > 0.0).then(|| Self::nearest(case, scaled, far, &weights)).transpose()
     }
 
     /// For the forces that leave the least of the resultants, each multiplied by its weight.
-    fn nearest(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool], weights: &[f64]) -> Result<Self> {
+    fn nearest(case: Case, scaled: &Scaled, far: &[bool], weights: &[f64]) -> Result<Self> {
+        let ready = case.ready;
         let qp = scaled.qp(ready, &ready.dual);
         let is_far = |i: &usize| far.get(*i).copied().unwrap_or(false);
         let rows: Vec<usize> = (0..qp.b.len()).filter(|i| !is_far(i)).collect();
-        let near = Restricted::new(qp, &rows);
-        let (x, rest) = weighted(&near.qp(), weights)?;
-        Ok(Self::of(data, ready, scaled, near.spread(&x), &rest))
+        let (x, rest) = if case.has_friction() {
+            nearest_forces(ready, qp, &scaled.gaps, &rows, weights)?
+        } else {
+            let near = Restricted::new(qp, &rows);
+            let (x, rest) = weighted(&near.qp(), weights)?;
+            (near.spread(&x), rest)
+        };
+        Ok(Self::of(&case.data()?, ready, scaled, x, &rest))
     }
 
     /// For the forces x of the dual, which leave `rest` = e - G x.
@@ -247,7 +256,7 @@ fn clusters(ready: &Ready, x: &[f64], left: &[f64]) -> (Vec<usize>, usize) {
 }
 
 /// `|(S (B v + mu |T v|))_+, S_H H v|` by the rows of the host: forces within their cones do no more work.
-fn resistance(ready: &Ready, v: &[f64]) -> f64 {
+pub fn resistance(ready: &Ready, v: &[f64]) -> f64 {
     let rows = &ready.rows;
     let mut all: Vec<f64> = (0..rows.tangential).map(|i| along(ready, i, v)).collect();
     for node in &ready.island.friction.nodes {

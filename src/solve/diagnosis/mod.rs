@@ -11,4 +11,4 @@ mod gaps;
 mod loads;
 
 pub use gaps::Contradictions;
-pub use loads::Unheld;
+pub use loads::{resistance, Unheld};
