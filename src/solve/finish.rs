@@ -12,11 +12,12 @@ use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 use crate::solve::slides::FAR;
+use crate::solve::sparse_face::{SparseFace, SparseFaces};
 
 /// Limit of active sets.
 const FACES: usize = 16;
 /// Limit of corrections on one active set.
-const CORRECTIONS: usize = 4;
+const CORRECTIONS: usize = 10;
 /// Ratios of the certificate below this are rounding.
 const ROUNDING: f64 = 1e-4;
 /// A ratio below `MUCH_BETTER` times another is much better; below `NO_WORSE` times another it is no worse.
@@ -81,19 +82,29 @@ impl Finish<'_, '_> {
         let mut active = qp.at_bound(&self.ending.solution.x);
         let mut point = SplitPoint::of(self.recovery, self.ending, if self.delicate { 1.0 } else { FAR })?;
         let mut visited: Vec<Vec<bool>> = Vec::new();
+        let mut sparse = None;
         while visited.len() < FACES && !visited.contains(&active) {
             let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
-            if rows.len() + point.alpha.len() > direct.limit {
-                break;
-            }
-            let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
-            let mut face = Feedback::on(face, point.alpha.len(), &self.negative)?;
-            self.ending.solution.counts.direct += 1;
             point.hold(&active);
-            self.correct(&mut point, &face)?;
-            if face.face.is_truncated() {
-                face = Feedback::on(face.face.in_full()?, point.alpha.len(), &self.negative)?;
-                self.correct(&mut point, &face)?;
+            self.ending.solution.counts.direct += 1;
+            if rows.len() + point.alpha.len() > direct.limit {
+                if sparse.is_none() {
+                    sparse = SparseFaces::of(self.recovery)?;
+                }
+                let Some(face) = sparse.as_ref().map(|faces| faces.on(rows)).transpose()?.flatten() else {
+                    break;
+                };
+                self.correct(&mut point, &FaceSolver::Sparse(face))?;
+            } else {
+                let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
+                let is_truncated = face.is_truncated();
+                let feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
+                let mut solver = FaceSolver::Dense(feedback);
+                self.correct(&mut point, &solver)?;
+                if is_truncated {
+                    solver = solver.in_full(point.alpha.len(), &self.negative)?;
+                    self.correct(&mut point, &solver)?;
+                }
             }
             if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
                 break;
@@ -105,12 +116,12 @@ impl Finish<'_, '_> {
 
     /// Corrections on one face while each is less than half the previous one; every intermediate answer that is no worse
     /// replaces the current one.
-    fn correct(&mut self, point: &mut SplitPoint, face: &Feedback) -> Result<()> {
+    fn correct(&mut self, point: &mut SplitPoint, face: &FaceSolver) -> Result<()> {
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             interrupt::check()?;
             let size = point.correct(self.recovery, &self.negative, face)?;
-            self.keep(point, &face.face)?;
+            self.keep(point, face.undetermined())?;
             if size >= 0.5 * last {
                 break;
             }
@@ -119,19 +130,44 @@ impl Finish<'_, '_> {
         Ok(())
     }
 
-    fn keep(&mut self, point: &SplitPoint, face: &Face) -> Result<()> {
+    fn keep(&mut self, point: &SplitPoint, undetermined: usize) -> Result<()> {
         let x = point.forces(&self.recovery.scaled.gaps.bounded);
         let recovered = self.recovery.with_forces(point.displacement(), &x);
         let judgement = self.recovery.judged(&recovered)?;
         if is_better(&judgement.certificate, &self.ending.judgement.certificate) {
             let solution = &mut self.ending.solution;
             (solution.x, solution.alpha) = (x, point.alpha.clone());
-            solution.undetermined = face.undetermined();
+            solution.undetermined = undetermined;
             (self.ending.recovered, self.ending.judgement) = (recovered, judgement);
             self.ending.deformed = point.deformed(self.recovery);
             self.replaced = true;
         }
         Ok(())
+    }
+}
+
+/// The factors of a face: dense ones of F and the modes, or sparse ones of the island.
+enum FaceSolver<'a> {
+    Dense(Feedback<'a>),
+    Sparse(SparseFace<'a>),
+}
+
+impl FaceSolver<'_> {
+    /// With all rows except those that depend on others up to rounding.
+    fn in_full(self, modes: usize, negative: &NegativeMotions) -> Result<Self> {
+        match self {
+            Self::Dense(feedback) => {
+                Feedback::on(feedback.face.in_full()?, modes, negative).map(FaceSolver::Dense)
+            }
+            sparse => Ok(sparse),
+        }
+    }
+
+    fn undetermined(&self) -> usize {
+        match self {
+            Self::Dense(feedback) => feedback.face.undetermined(),
+            Self::Sparse(face) => face.undetermined(),
+        }
     }
 }
 
@@ -154,22 +190,28 @@ struct SplitPoint {
     alpha: Vec<f64>,
     /// A motion of a body is added to w where it is larger than v by this factor.
     apart: f64,
+    /// The largest correction of each unknown on this face: its rounding is not seen in u where a row presses u to zero.
+    corrected: Vec<f64>,
 }
 
 impl SplitPoint {
     /// The current answer, or zero if it does not pass: redundant rows may have spoilt its forces.
     fn of(recovery: &Recovery, ending: &Ending, apart: f64) -> Result<Self> {
-        let Ending { solution, judgement, .. } = ending;
-        let known = |v: &[f64]| if judgement.certificate.passed() { v.to_vec() } else { vec![0.0; v.len()] };
-        let x = known(&solution.x);
-        let mut point = Self::at_origin(recovery.deformed(&x)?, x, solution.alpha.len(), apart);
-        point.turn(recovery, &known(&solution.alpha))?;
+        let Ending { solution, deformed, judgement, .. } = ending;
+        let modes = solution.alpha.len();
+        if !judgement.certificate.passed() {
+            return Ok(Self::at_origin(vec![0.0; deformed.len()], vec![0.0; solution.x.len()], modes, apart));
+        }
+        let deformed = recovery.deformed(&solution.x)?;
+        let mut point = Self::at_origin(deformed, solution.x.clone(), modes, apart);
+        point.turn(recovery, &solution.alpha)?;
         Ok(point)
     }
 
     fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize, apart: f64) -> Self {
-        let (w, v, x) = (vec![0.0; v.len()].into(), v.into(), x.into());
-        Self { w, v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart }
+        let none = vec![0.0; v.len()];
+        let (w, v, x) = (none.clone().into(), v.into(), x.into());
+        Self { w, v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart, corrected: none }
     }
 
     /// Adds R a and returns R a.
@@ -211,6 +253,7 @@ impl SplitPoint {
     /// Sets the forces to 0 on rows outside the active set.
     fn hold(&mut self, active: &[bool]) {
         (0..active.len()).filter(|&i| active[i]).for_each(|i| self.x.set_to_zero(i));
+        self.corrected.fill(0.0);
     }
 
     /// x without the rounding of forces that are zero.
@@ -221,28 +264,37 @@ impl SplitPoint {
 
     /// Solves (10)-(11) on the face for the residual loads and gaps, `f - K u - B'x` and `c + C x - B u`: every
     /// correction reduces the errors of F and K+. Returns the length of the correction, `|.|_D`.
-    fn correct(
-        &mut self,
-        recovery: &Recovery,
-        negative: &NegativeMotions,
-        feedback: &Feedback,
-    ) -> Result<f64> {
-        let face = &feedback.face;
+    fn correct(&mut self, recovery: &Recovery, negative: &NegativeMotions, face: &FaceSolver) -> Result<f64> {
         let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
         let mut load = recovery.load_left(&self.v.parts(), &self.x.parts())?;
         let left = self.gaps_left(recovery);
-        let mut gaps = vec![0.0; self.x.len()];
-        face.rows().iter().for_each(|&i| gaps[i] = left[i]);
-        let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
-        let force = face.rows().iter().map(|&i| d[i]).collect();
-        let (step, turn) = feedback.solve(negative, force, &dual.resultants(&load))?;
-        let mut forces = vec![0.0; self.x.len()];
-        face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
-        rows.take_forces(&forces, &mut load);
-        let mut moved = recovery.inverse(&load)?;
-        moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
-        axpy(1.0, &self.turn(recovery, &turn)?, &mut moved);
+        let (moved, forces) = match face {
+            FaceSolver::Sparse(face) => {
+                let (moved, forces) = face.solve(load, &left)?;
+                moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
+                let turn = recovery.amplitudes(&moved);
+                axpy(1.0, &turn, &mut self.alpha);
+                axpy(1.0, &turn, &mut self.beta);
+                (moved, forces)
+            }
+            FaceSolver::Dense(feedback) => {
+                let face = &feedback.face;
+                let mut gaps = vec![0.0; self.x.len()];
+                face.rows().iter().for_each(|&i| gaps[i] = left[i]);
+                let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
+                let force = face.rows().iter().map(|&i| d[i]).collect();
+                let (step, turn) = feedback.solve(negative, force, &dual.resultants(&load))?;
+                let mut forces = vec![0.0; self.x.len()];
+                face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
+                rows.take_forces(&forces, &mut load);
+                let mut moved = recovery.inverse(&load)?;
+                moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
+                axpy(1.0, &self.turn(recovery, &turn)?, &mut moved);
+                (moved, forces)
+            }
+        };
         forces.iter().enumerate().for_each(|(i, force)| self.x.add(i, *force));
+        self.corrected.iter_mut().zip(&moved).for_each(|(most, by)| *most = most.max(by.abs()));
         Ok(weighted_norm(&moved, |i| rows.metric[i]))
     }
 
@@ -251,7 +303,8 @@ impl SplitPoint {
         let (left, rows) = (self.gaps_left(recovery), &recovery.ready.rows.scaled);
         let (u, x) = (self.displacement(), self.x.values());
         let Gaps { value, bounded, .. } = &recovery.scaled.gaps;
-        let terms = |i: usize| rows.row(i).map(|(j, v)| (v * u[j]).abs()).sum::<f64>();
+        let terms =
+            |i: usize| rows.row(i).map(|(j, v)| v.abs() * u[j].abs().max(self.corrected[j])).sum::<f64>();
         let noise = |i: usize| NOISE * (value[i].abs() + terms(i));
         // a gap that corrections cannot close depends on other rows, which also carry its force
         let leaves = |i: usize| x[i] < 0.0 || left[i] > noise(i);
@@ -295,7 +348,7 @@ mod tests {
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
                 let negative = NegativeMotions::of(recovery.ready);
-                let face = Feedback::on(face, 0, &negative).unwrap();
+                let face = FaceSolver::Dense(Feedback::on(face, 0, &negative).unwrap());
                 let mut finish =
                     Finish { recovery, ending: &mut ending, delicate: true, replaced: false, negative };
                 finish.correct(&mut point, &face).unwrap();

@@ -28,6 +28,7 @@ mod rounds;
 mod scaled;
 mod slides;
 mod sliding;
+mod sparse_face;
 mod start;
 mod travel;
 

@@ -188,6 +188,19 @@ impl<'a> Recovery<'a> {
         self.data.bodies.iter().zip(cleaners.iter_mut()).map(clean).collect()
     }
 
+    /// Amplitudes over the modes of the dual of the rigid part of u: R'D u of every body.
+    pub fn amplitudes(&self, u: &[f64]) -> Vec<f64> {
+        let dual = &self.ready.dual;
+        let mut all = vec![0.0; dual.modes()];
+        for (k, body) in self.data.bodies.iter().enumerate() {
+            let by = self.ready.island.unit / body.unit;
+            let weighted: Vec<f64> = body.range().map(|j| by * self.ready.rows.metric[j] * u[j]).collect();
+            let own = body.null_space.mul_transposed(&weighted);
+            all[dual.modes_of(k)].iter_mut().zip(own).for_each(|(a, own)| *a = own * dual.size_of(k));
+        }
+        all
+    }
+
     /// The judgement of an answer.
     pub fn judged(&self, answer: &Recovered) -> Result<Judgement> {
         self.judged_on(&self.data, answer)

@@ -8,6 +8,8 @@ use crate::qp::Verdict;
 const TRAVEL: f64 = 10.0;
 /// A point refused by less than this factor is corrected by some more steps.
 const MISSED: f64 = 1e3;
+/// Limit of steps without gain: a solve that goes on without is not ended by more of them.
+const PLATEAU: usize = 50;
 /// How many times the tolerance is tightened if the point is not accepted.
 const TIGHTENINGS: usize = 8;
 /// A refusal does not depend on the residual if its violation is still above this part of the previous one.
@@ -51,7 +53,7 @@ impl Stop {
             self.face.clone_from(&it.split.active);
         }
         let unknowns = it.split.active.iter().filter(|active| !**active).count();
-        steps - self.met > 2 * unknowns + 20
+        steps - self.met > (2 * unknowns + 20).min(PLATEAU)
     }
 
     /// P1.2: once, if the scale is dominated by rigid travel: from now on the residual is relative to the scale without

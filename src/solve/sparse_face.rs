@@ -1,0 +1,140 @@
+//! Corrections on a face with too many rows for dense factors: one sparse Cholesky factor of the island,
+//!
+//! ```text
+//! (K + B_F' W B_F) du = r + B_F' W g,   dx = W (B_F du - g),   W = 1 / max(C, c)
+//! ```
+//!
+//! for the residual loads r and gaps g. With W = 1/C this solves the face; a row that is stiffer than 1/c takes some corrections
+//! more.
+
+use std::sync::Arc;
+
+use crate::body::Stiffness;
+use crate::error::Result;
+use crate::linalg::cholesky::{Analysis, Cholesky};
+use crate::linalg::sparse::gram::Gram;
+use crate::linalg::vector::NOISE;
+use crate::linalg::{Csr, Symmetric};
+use crate::platform::memory::zeros;
+use crate::platform::{interrupt, tally};
+use crate::solve::recovery::Recovery;
+
+/// 1/c is this multiple of the stiffest unknown of the row: much more loses digits of K, much less takes many corrections.
+const STIFFER: f64 = 1e3;
+/// Rows with more entries would fill the factor.
+const WIDE: usize = 100;
+
+const WHAT: &str = "the matrix of a face";
+
+/// The pattern of all faces of an island.
+pub struct SparseFaces<'a> {
+    /// B, the rows of the dual.
+    rows: &'a Csr,
+    compliance: &'a [f64],
+    /// c
+    least: Vec<f64>,
+    gram: Gram,
+    /// K in units of 2^p, with the pattern of K + B'B.
+    k: Symmetric,
+    analysis: Arc<Analysis>,
+}
+
+/// The factor of a face.
+pub struct SparseFace<'a> {
+    faces: &'a SparseFaces<'a>,
+    pub rows: Vec<usize>,
+    /// W
+    weight: Vec<f64>,
+    /// Of `S (K + B_F' W B_F) S` with S = diag(.)^-1/2.
+    factor: Cholesky,
+    scale: Vec<f64>,
+}
+
+impl<'a> SparseFaces<'a> {
+    /// None if some K is not given by its entries, or rows are wide.
+    pub fn of(recovery: &Recovery<'a>) -> Result<Option<Self>> {
+        let (dual, own) = (&recovery.ready.dual, &recovery.ready.rows);
+        let (rows, metric) = (&own.matrix, &own.metric);
+        let wide = |i: usize| rows.ptr[i + 1] - rows.ptr[i] > WIDE;
+        if dual.springs > 0 || (0..rows.rows()).any(wide) {
+            return Ok(None);
+        }
+        let gram = Gram::of(rows)?;
+        let (pattern, unit) = (gram.pattern(), recovery.ready.island.unit);
+        let mut k = Symmetric::with_room(metric.len(), pattern.col.len(), WHAT)?;
+        for body in &recovery.data.bodies {
+            let Stiffness::Matrix(own) = body.stiffness else { return Ok(None) };
+            for i in 0..own.order() {
+                let stiff = own.lower_row(i).map(|(j, v)| (body.start + j, v / unit));
+                k.push_row(merged(stiff, pattern.lower_row(body.start + i).map(|(j, _)| (j, 0.0))));
+            }
+        }
+        let least = (0..rows.rows()).map(|i| {
+            let stiffest = rows.row(i).map(|(j, _)| metric[j]).fold(0.0, f64::max);
+            rows.row(i).map(|(_, b)| b * b).fold(0.0, f64::max) / (STIFFER * stiffest)
+        });
+        let analysis = Arc::new(Analysis::new(&k, &vec![false; metric.len()])?);
+        let (least, compliance) = (least.collect(), &own.compliance[..]);
+        Ok(Some(Self { rows, compliance, least, gram, k, analysis }))
+    }
+
+    /// None if the matrix of this face is not positive semidefinite.
+    pub fn on(&'a self, rows: Vec<usize>) -> Result<Option<SparseFace<'a>>> {
+        interrupt::check()?;
+        tally::costly();
+        let mut weight = zeros(self.rows.rows(), WHAT)?;
+        rows.iter().for_each(|&i| weight[i] = self.compliance[i].max(self.least[i]).recip());
+        let pressed = self.gram.weighted(self.rows, |i| weight[i])?;
+        let mut matrix = Symmetric::with_room(self.k.order(), self.k.col.len(), WHAT)?;
+        for i in 0..self.k.order() {
+            matrix.push_row(merged(self.k.lower_row(i), pressed.lower_row(i)));
+        }
+        let root = |i: usize| if matrix.diagonal(i) > 0.0 { matrix.diagonal(i).sqrt().recip() } else { 1.0 };
+        let scale: Vec<f64> = (0..matrix.order()).map(root).collect();
+        let mut scaled = Symmetric::with_room(matrix.order(), matrix.col.len(), WHAT)?;
+        for i in 0..matrix.order() {
+            scaled.push_row(matrix.lower_row(i).map(|(j, v)| (j, scale[i] * v * scale[j])));
+        }
+        let factor = self.analysis.pivoted(&scaled, 1.0, NOISE)?;
+        Ok(factor.ok().map(|factor| SparseFace { faces: self, rows, weight, factor, scale }))
+    }
+}
+
+impl SparseFace<'_> {
+    /// du, and dx over all rows, for residual loads and gaps in units of 2^p.
+    pub fn solve(&self, mut load: Vec<f64>, gaps: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
+        let mut pull = zeros(gaps.len(), WHAT)?;
+        self.rows.iter().for_each(|&i| pull[i] = self.weight[i] * gaps[i]);
+        self.faces.rows.mul_transposed_add(1.0, &pull[..self.weight.len()], &mut load);
+        load.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
+        self.factor.solve(&mut load)?;
+        load.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
+        for &i in &self.rows {
+            pull[i] = self.weight[i] * (self.faces.rows.row_dot(i, &load) - gaps[i]);
+        }
+        Ok((load, pull))
+    }
+
+    /// Motions that neither K nor the rows resist.
+    pub fn undetermined(&self) -> usize {
+        self.factor.at_rest().len()
+    }
+}
+
+/// The sum of two rows, each ascending.
+fn merged(
+    a: impl Iterator<Item = (usize, f64)>,
+    b: impl Iterator<Item = (usize, f64)>,
+) -> impl Iterator<Item = (usize, f64)> {
+    let (mut a, mut b) = (a.peekable(), b.peekable());
+    std::iter::from_fn(move || match (a.peek().copied(), b.peek().copied()) {
+        (Some((i, v)), Some((j, w))) if i == j => {
+            a.next();
+            b.next();
+            Some((i, v + w))
+        }
+        (Some((i, _)), Some((j, _))) if j < i => b.next(),
+        (None, _) => b.next(),
+        _ => a.next(),
+    })
+}
