@@ -99,7 +99,7 @@ impl Finish<'_, '_> {
                 let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
                 let is_truncated = face.is_truncated();
                 let feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
-                let mut solver = FaceSolver::Dense(feedback);
+                let mut solver = FaceSolver::Dense(Box::new(feedback));
                 self.correct(&mut point, &solver)?;
                 if is_truncated {
                     solver = solver.in_full(point.alpha.len(), &self.negative)?;
@@ -148,7 +148,7 @@ impl Finish<'_, '_> {
 
 /// The factors of a face: dense ones of F and the modes, or sparse ones of the island.
 enum FaceSolver<'a> {
-    Dense(Feedback<'a>),
+    Dense(Box<Feedback<'a>>),
     Sparse(SparseFace<'a>),
 }
 
@@ -157,7 +157,8 @@ impl FaceSolver<'_> {
     fn in_full(self, modes: usize, negative: &NegativeMotions) -> Result<Self> {
         match self {
             Self::Dense(feedback) => {
-                Feedback::on(feedback.face.in_full()?, modes, negative).map(FaceSolver::Dense)
+                let face = feedback.face.in_full()?;
+                Ok(Self::Dense(Box::new(Feedback::on(face, modes, negative)?)))
             }
             sparse => Ok(sparse),
         }
@@ -348,7 +349,7 @@ mod tests {
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
                 let negative = NegativeMotions::of(recovery.ready);
-                let face = FaceSolver::Dense(Feedback::on(face, 0, &negative).unwrap());
+                let face = FaceSolver::Dense(Box::new(Feedback::on(face, 0, &negative).unwrap()));
                 let mut finish =
                     Finish { recovery, ending: &mut ending, delicate: true, replaced: false, negative };
                 finish.correct(&mut point, &face).unwrap();
