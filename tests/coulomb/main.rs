@@ -9,4 +9,5 @@ mod hand_over;
 mod invariance;
 mod judge;
 mod space;
+mod tied;
 mod tresca;
