@@ -201,7 +201,7 @@ impl<'a> Orthogonalisation<'a> {
             changes |= !self.cleared(i, &equalities_at(i)).is_empty();
             let square = self.sum.square(self.given.metric);
             let before: f64 = self.given.matrix.row(i).map(|(j, v)| v * v / self.given.metric[j]).sum();
-            if square <= REMAINDER * REMAINDER * before {
+            if square < REMAINDER * REMAINDER * before {
                 return;
             }
             squares += square + self.given.compliance[i];

@@ -48,10 +48,13 @@ fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
     })
 }
 
-/// `s_t = 1/rms(1/s_k)` for all rows of a node, so that discs of forces remain discs.
-fn one_scale(scales: &mut [f64]) {
-    let square = scales.iter().map(|s| s.powi(-2)).sum::<f64>() / scales.len() as f64;
-    scales.fill(square.sqrt().recip());
+/// `s_t = 1/rms(1/s_k)` for all rows of a node, so that discs of forces remain discs; that of its contact row if none of them
+/// has entries.
+fn one_scale(scales: &mut [f64], normal: Option<f64>) {
+    // rows without entries have the length 0
+    let squares = scales.iter().filter(|s| **s > 0.0).map(|s| s.powi(-2)).sum::<f64>();
+    let own = (squares / scales.len() as f64).sqrt().recip();
+    scales.fill(normal.filter(|_| squares == 0.0).unwrap_or(own));
 }
 
 impl DualRows {
@@ -67,7 +70,9 @@ impl DualRows {
                 None => e,
             })?;
             if kind == RowKind::Tangential {
-                island.friction.nodes.iter().for_each(|node| one_scale(&mut scales[node.rows()]));
+                for node in &island.friction.nodes {
+                    one_scale(&mut scales[node.rows()], node.normal.map(|row| scale[row]));
+                }
             }
             for (i, s) in scales.iter().enumerate() {
                 all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));

@@ -9,5 +9,6 @@ mod hand_over;
 mod invariance;
 mod judge;
 mod space;
+mod struck_out;
 mod tied;
 mod tresca;

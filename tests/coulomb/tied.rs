@@ -1,28 +1,15 @@
 //! Equality rows on some of the directions of a node with friction in space.
 
 use decks::random::Random;
-use decks::{Body, Csr, Deck};
+use decks::Deck;
 use feti_contact::solver::{FrictionState, Outcome, RowKind};
 
 use crate::hand_over;
-
-/// Springs at the ground, one for every unknown.
-fn springs(stiffness: &[f64], load: &[f64]) -> Body {
-    let mut matrix = Csr::empty(stiffness.len());
-    stiffness.iter().enumerate().for_each(|(i, k)| matrix.push_row(&[(i, *k)]));
-    Body {
-        stiffness: matrix,
-        null_space: None,
-        load: load.to_vec(),
-        coordinates: vec![[0.0; 3]; stiffness.len()],
-        node: vec![1; stiffness.len()],
-        direction: (1..=stiffness.len() as i32).collect(),
-    }
-}
+use crate::struck_out::springs;
 
 /// `r` with `(f_x / (k_x r + b))^2 + (f_y / (k_y r + b))^2 = 1`: the slip of a point on springs k pushed by f beyond the bound b, because
 /// `(k + b / r) u = f`, `r = |u|`.
-fn slip(k: [f64; 2], f: [f64; 2], b: f64) -> f64 {
+pub fn slip(k: [f64; 2], f: [f64; 2], b: f64) -> f64 {
     let exceeds = |r: f64| (f[0] / (k[0] * r + b)).hypot(f[1] / (k[1] * r + b)) > 1.0;
     let (mut low, mut high) = (0.0, f[0].hypot(f[1]) / k[0].min(k[1]));
     for _ in 0..200 {
