@@ -2,6 +2,7 @@
 
 use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
 use crate::error::Result;
+use crate::linalg::vector::NOISE;
 use crate::linalg::Csr;
 use crate::setup::islands::{Island, Members};
 use crate::setup::scaling::Scaling;
@@ -97,6 +98,29 @@ impl DualRows {
         let uneven = is_uneven(&scaled, &metric, island);
         let scaling = Scaling { unit: island.unit, scale, grouping, decoupling };
         Ok(Self { scaled, matrix, compliance, metric, scaling, coupled, contact, tangential, uneven })
+    }
+
+    /// Parallel contact rows whose gaps agree to the accuracy of the data have the tightest of these gaps: what is taken from the
+    /// others is rounding.
+    pub fn level_gaps(&self, island: &mut Island) {
+        let (accuracy, rows) = (island.accuracy, &mut island.contact.rows);
+        let mut tightest = vec![f64::INFINITY; self.groups()];
+        let members = || {
+            let contact = self.scaling.grouping.members().take_while(|(i, _)| *i < self.contact);
+            contact.filter(|(_, (group, _))| self.kind(*group) == RowKind::Inequality)
+        };
+        let scale = &self.scaling.scale;
+        for (i, (group, _)) in members() {
+            tightest[group] = tightest[group].min(scale[i] * rows.rhs[i]);
+        }
+        for (i, (group, _)) in members() {
+            let (given, level) = (rows.rhs[i], tightest[group] / scale[i]);
+            let slack = (accuracy.length * rows.largest_entry(i)).max(NOISE * given.abs());
+            if scale[i] * given != tightest[group] && given - level <= slack {
+                rows.rhs[i] = level;
+                rows.rounding[i] += (given - level).abs();
+            }
+        }
     }
 
     /// The first group that is a tangential row; all groups after it are tangential rows.

@@ -4,6 +4,7 @@ mod battery;
 mod by_hand;
 mod drawn;
 mod enumeration;
+mod equal_rows;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod invariance;
