@@ -7,6 +7,7 @@ mod enumeration;
 mod equal_rows;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
+mod idle;
 mod invariance;
 mod judge;
 mod space;
