@@ -1108,14 +1108,15 @@ int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int6
  * acts at open nodes.
  *
  * If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential
- * rows by the same factor: lengths that differ by more than a factor of 1e3 are refused.
- * Tangential rows may be oblique, and may have no entries. `normal_row` is the number of a contact
- * row, never of an equality row, and each contact row belongs to at most one node. If a pair of
- * body and unknown occurs twice in a row, the entries are summed. s_old and C_t start at zero (see
- * feti_friction_reference and feti_friction_compliance). The data are copied, and the nodes are
- * numbered after the existing nodes; all nodes have the same dim. The factors of the bodies stay
- * valid; the last answer is dropped. FETI_STATE if `body` is NULL and some bodies have numbers of
- * the host while others have none. After a failure nothing is added.
+ * rows by the same factor: lengths that differ by more than a factor of 1e3 are refused, unless
+ * struck-out supports may have shortened a row. Tangential rows may be oblique, and may have no
+ * entries. `normal_row` is the number of a contact row, never of an equality row, and each contact
+ * row belongs to at most one node. If a pair of body and unknown occurs twice in a row, the
+ * entries are summed. s_old and C_t start at zero (see feti_friction_reference and
+ * feti_friction_compliance). The data are copied, and the nodes are numbered after the existing
+ * nodes; all nodes have the same dim. The factors of the bodies stay valid; the last answer is
+ * dropped. FETI_STATE if `body` is NULL and some bodies have numbers of the host while others have
+ * none. After a failure nothing is added.
  *
  * @param[in]  p           (scalar) the handle
  * @param[in]  nodes       (scalar) number of nodes, 0 adds none
@@ -1166,14 +1167,15 @@ int32_t feti_friction_add_i32(struct feti_problem *p,
  * acts at open nodes.
  *
  * If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential
- * rows by the same factor: lengths that differ by more than a factor of 1e3 are refused.
- * Tangential rows may be oblique, and may have no entries. `normal_row` is the number of a contact
- * row, never of an equality row, and each contact row belongs to at most one node. If a pair of
- * body and unknown occurs twice in a row, the entries are summed. s_old and C_t start at zero (see
- * feti_friction_reference and feti_friction_compliance). The data are copied, and the nodes are
- * numbered after the existing nodes; all nodes have the same dim. The factors of the bodies stay
- * valid; the last answer is dropped. FETI_STATE if `body` is NULL and some bodies have numbers of
- * the host while others have none. After a failure nothing is added.
+ * rows by the same factor: lengths that differ by more than a factor of 1e3 are refused, unless
+ * struck-out supports may have shortened a row. Tangential rows may be oblique, and may have no
+ * entries. `normal_row` is the number of a contact row, never of an equality row, and each contact
+ * row belongs to at most one node. If a pair of body and unknown occurs twice in a row, the
+ * entries are summed. s_old and C_t start at zero (see feti_friction_reference and
+ * feti_friction_compliance). The data are copied, and the nodes are numbered after the existing
+ * nodes; all nodes have the same dim. The factors of the bodies stay valid; the last answer is
+ * dropped. FETI_STATE if `body` is NULL and some bodies have numbers of the host while others have
+ * none. After a failure nothing is added.
  *
  * @param[in]  p           (scalar) the handle
  * @param[in]  nodes       (scalar) number of nodes, 0 adds none
@@ -1980,7 +1982,7 @@ int32_t feti_friction_commit(struct feti_problem *p);
  * @param[in] first (scalar) first node to change, from 0
  * @param[in] nodes (scalar) number of nodes to change
  * @param[in] dim   (scalar) tangential rows of a node, 1 or 2; ignored if there are no nodes
- * @param[in] s_old (dim * nodes) node after node, length; 0 for rows without entries
+ * @param[in] s_old (dim * nodes) node after node, length; rows without entries slip by minus this
  *
  * Safety: The array has the given shape.
  */
@@ -2664,7 +2666,7 @@ typedef struct feti_progress {
    */
   int64_t products;
   /**
-   * Inequality rows with a force; a set of parallel rows counts once.
+   * Inequality rows with a force.
    */
   int64_t active;
   /**

@@ -15,7 +15,7 @@ use crate::constraints::RowKind;
 use crate::error::Result;
 
 /// Judges again with larger limits: `64 eps (V phi_i)^1/2`, length, is added to the limits of gaps and slips that fail,
-/// `64 eps A phi_i^1/2` if the row touches a body without load or forces, and `64 eps V` to the rounding of the energies.
+/// `64 eps A phi_i^1/2`, phi_i at least that of its own unknowns, if the row touches a body without load or forces, and `64 eps V` to the rounding of the energies.
 /// The worst row or node comes first; the first that still fails ends the loop.
 pub(super) fn by_rounding(
     field: &Field,
@@ -35,8 +35,10 @@ pub(super) fn by_rounding(
         asked += 1;
         for row in rows.rows_of(kind, i) {
             let compliance = response.compliance_of(kind, row)?;
+            // for forces that are zero the row's own unknowns will do: K+ of bodies that are cut is not known
+            let idle = compliance.max(field.compliance(kind, row));
             rows.rows[kind as usize][row].gap_limit +=
-                NOISE * (work * compliance).sqrt() + forces.idle_at(field, kind, row) * compliance.sqrt();
+                NOISE * (work * compliance).sqrt() + forces.idle_at(field, kind, row) * idle.sqrt();
         }
         if !(rows.gap_ratio(kind, i) <= 1.0) {
             break;

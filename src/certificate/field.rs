@@ -93,6 +93,16 @@ impl<'a> Field<'a> {
         weighted_norm(v, |i| 1.0 / self.metric[start + i])
     }
 
+    /// `b_i D~^-1 b_i' + C_i`, length / force; 0 for a row without scale.
+    pub fn compliance(&self, kind: RowKind, i: usize) -> f64 {
+        let scale = self.scales[kind as usize][i];
+        if scale > 0.0 {
+            1.0 / scale / scale / self.unit
+        } else {
+            0.0
+        }
+    }
+
     /// The bodies that row i touches, ascending.
     pub fn touched<'s>(&'s self, rows: &'s RowSet, i: usize) -> impl Iterator<Item = usize> + 's {
         let mut end = 0;

@@ -95,7 +95,7 @@ impl Forces {
         };
         match field.touched(rows, i).map(allowed).reduce(smaller) {
             Some(least) => field.scales[kind as usize][i] * least,
-            None => field.data.limit * alone(rows, i),
+            None => field.data.limit * rows.force_without_entries(kind, i).abs(),
         }
     }
 }
@@ -108,11 +108,6 @@ fn of_grounded(field: &Field) -> f64 {
     };
     let own = |p: usize| field.range(p).filter(|j| field.grounded[*j]).map(move |j| of(p, j));
     (0..field.data.bodies.len()).flat_map(own).fold(0.0, f64::max)
-}
-
-/// The force `(-c_i)_+ / C_i` of a spring without entries, `-c_i <= C_i lambda_i`.
-fn alone(rows: &RowSet, i: usize) -> f64 {
-    share(positive(-rows.rhs[i]), rows.compliance[i])
 }
 
 /// The smaller of the two; NaN stays NaN.

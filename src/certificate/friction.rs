@@ -63,10 +63,11 @@ pub(super) fn judged(field: &Field, rows: &[Vec<JudgedRow>; 3]) -> Vec<JudgedNod
     nodes.iter().map(of).collect()
 }
 
-/// The smallest `s_i / U^1/2` of its tangential rows, no unit.
+/// The smallest `s_i / U^1/2` of its tangential rows, no unit; that of its contact row if none of them has entries.
 fn scale(field: &Field, node: &FrictionNode) -> f64 {
-    let scales = &field.scales[RowKind::Tangential as usize][node.rows()];
-    scales.iter().copied().fold(f64::INFINITY, f64::min)
+    let [contact, _, tangential] = &field.scales;
+    let with_entries = tangential[node.rows()].iter().copied().filter(|s| *s > 0.0);
+    with_entries.reduce(f64::min).or(node.normal.map(|row| contact[row])).unwrap_or(0.0)
 }
 
 /// Bodies that the rows of a node touch, with repetitions.

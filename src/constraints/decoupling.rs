@@ -176,7 +176,10 @@ impl<'a> Orthogonalisation<'a> {
                 cluster.iter().for_each(|&i| self.changed[i] = None);
                 return false;
             }
-            self.store(i, parts, square.sqrt());
+            // without parts it has its length already
+            if !parts.is_empty() {
+                self.store(i, parts, square.sqrt());
+            }
         }
         true
     }
@@ -185,23 +188,26 @@ impl<'a> Orthogonalisation<'a> {
         let parts = self.cleared(i, equalities);
         let square = self.sum.square(self.given.metric);
         let before: f64 = self.given.matrix.row(i).map(|(j, v)| v * v / self.given.metric[j]).sum();
-        if square > REMAINDER * REMAINDER * before {
+        if !parts.is_empty() && square > REMAINDER * REMAINDER * before {
             self.store(i, parts, (square + self.given.compliance[i]).sqrt());
         }
     }
 
-    /// One scale factor for both rows of a node, so that the disc of admissible forces remains a disc; both rows change
-    /// or none.
+    /// One scale factor for all rows of a node, so that the disc of admissible forces remains a disc; all rows change
+    /// or none, also those that no equality row meets.
     fn clear_node(&mut self, node: Range<usize>, equalities_at: impl Fn(usize) -> Vec<usize>) {
-        let mut squares = 0.0;
+        let (mut squares, mut changes) = (0.0, false);
         for i in node.clone() {
-            self.cleared(i, &equalities_at(i));
+            changes |= !self.cleared(i, &equalities_at(i)).is_empty();
             let square = self.sum.square(self.given.metric);
             let before: f64 = self.given.matrix.row(i).map(|(j, v)| v * v / self.given.metric[j]).sum();
-            if square <= REMAINDER * REMAINDER * before {
+            if square < REMAINDER * REMAINDER * before {
                 return;
             }
             squares += square + self.given.compliance[i];
+        }
+        if !changes {
+            return;
         }
         let factor = (squares / node.len() as f64).sqrt();
         for i in node {
@@ -229,13 +235,11 @@ impl<'a> Orthogonalisation<'a> {
         against.iter().copied().zip(parts).filter(|(_, part)| *part != 0.0).collect()
     }
 
-    /// `b_i = sum l_k b'_k + length b'_i`; a row without changes already has its length.
+    /// `b_i = sum l_k b'_k + length b'_i`
     fn store(&mut self, i: usize, mut parts: Combination, length: f64) {
-        if !parts.is_empty() {
-            parts.sort_unstable_by_key(|(k, _)| *k);
-            parts.push((i, length));
-            self.changed[i] = Some((self.sum.divided(length), parts));
-        }
+        parts.sort_unstable_by_key(|(k, _)| *k);
+        parts.push((i, length));
+        self.changed[i] = Some((self.sum.divided(length), parts));
     }
 
     fn finish(self) -> (Decoupling, Csr) {

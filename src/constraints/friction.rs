@@ -1,9 +1,15 @@
 //! Contact nodes with friction: a normal row, one or two tangential rows, a coefficient and a bound.
 
-use std::ops::Range;
+mod factors;
 
-use crate::constraints::{RowKind, RowSet, RowsInput, SHORT};
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::constraints::friction::factors::{check_factors, entries, ratio, FACTORS};
+use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::error::{Error, Result, INDEX};
+use crate::linalg::vector::{first_non_finite, NOISE};
+use crate::linalg::Csr;
 use crate::platform::memory::filled;
 
 /// The law of one node: `|lambda_t| <= bound + coefficient x lambda_n`.
@@ -62,9 +68,6 @@ pub struct FrictionInput<'a> {
     pub bound: Option<&'a [f64]>,
 }
 
-/// Limit of the ratio of row lengths at one node: beyond it the host has multiplied them by different factors.
-const FACTORS: f64 = 1e3;
-
 impl Friction {
     pub fn len(&self) -> usize {
         self.nodes.len()
@@ -76,23 +79,38 @@ impl Friction {
         bound > 0.0 || normal.is_some_and(|row| contact.is_finite(row))
     }
 
-    /// Rows and compliances equal those of the other, and the same nodes, with the same contact rows, may carry a force.
+    /// Rows and compliances equal those of the other, and the same nodes and rows, with the same contact rows, may carry a force.
     pub fn same_but_law(&self, contact: &RowSet, other: &Self, other_contact: &RowSet) -> bool {
         let node = |k: usize| {
             self.nodes[k].normal == other.nodes[k].normal
                 && self.acts(k, contact) == other.acts(k, other_contact)
         };
         let counts = (self.dim, self.len()) == (other.dim, other.len());
-        counts && self.rows.same_but_rhs(&other.rows) && (0..self.len()).all(node)
+        let row = |i: usize| self.counts(i) == other.counts(i);
+        counts
+            && self.rows.same_but_rhs(&other.rows)
+            && (0..self.len()).all(node)
+            && (0..self.rows.len()).all(row)
     }
 
-    /// `T u - C_t lambda_t`, length, (dim, nodes): the s_old for which the answer has no slip; 0 for rows without
-    /// entries.
+    /// Tangential row i has entries, or slips by its s_old alone and takes its part of the node's force.
+    pub fn counts(&self, i: usize) -> bool {
+        !self.rows.is_empty_row(i) || self.rows.rhs[i] != 0.0
+    }
+
+    /// `T u - C_t lambda_t`, length, (dim, nodes): the s_old for which the answer has no slip.
     pub fn reached(&self, u: &[f64], tangential: &[f64]) -> Result<Vec<f64>> {
         let mut rows = self.rows.copied("friction")?;
         rows.rhs.fill(0.0);
-        let slip = |i: usize| if rows.is_empty_row(i) { 0.0 } else { -rows.open_gap(i, u, tangential[i]) };
-        Ok((0..rows.len()).map(slip).collect())
+        Ok((0..rows.len()).map(|i| 0.0 - rows.open_gap(i, u, tangential[i])).collect())
+    }
+
+    /// The ratio of the lengths of a node's rows, if it is too large for one factor, or supports have taken entries.
+    pub fn unequal(&self, node: usize, contact: &RowSet) -> Option<f64> {
+        let FrictionNode { normal, .. } = self.nodes[node];
+        let own = self.nodes[node].rows().map(|i| entries(&self.rows, i));
+        let ratio = ratio(&mut own.chain(normal.map(|row| entries(contact, row))).collect());
+        (ratio > FACTORS).then_some(ratio)
     }
 
     /// A copy that shares the entries of the rows; `what` names it in errors.
@@ -122,9 +140,10 @@ impl Friction {
         let mut rows = RowSet::default();
         rows.add(RowKind::Tangential, input.rows, offsets).map_err(|error| of_node(error, input.dim))?;
         for (k, row) in normal.iter().enumerate() {
-            let own = (k * input.dim..(k + 1) * input.dim).map(|i| length(&rows, i));
-            check_factors(own.chain(row.map(|row| length(contact, row))), k)?;
+            let own = (k * input.dim..(k + 1) * input.dim).map(|i| entries(&rows, i));
+            check_factors(own.chain(row.map(|row| entries(contact, row))).collect(), k)?;
         }
+        drop_noise(&mut rows, &normal, contact);
         if count > 0 {
             self.dim = input.dim;
         }
@@ -207,23 +226,20 @@ impl Friction {
         Ok(())
     }
 
-    /// Sets s_old, length, (dim, nodes), of the nodes from `first` on.
-    pub fn set_reference(&mut self, first: usize, count: usize, dim: usize, s_old: &[f64]) -> Result<()> {
+    /// Sets s_old, length, (dim, nodes), of the nodes from `first` on. True if some row without entries begins or ceases to
+    /// count.
+    pub fn set_reference(&mut self, first: usize, count: usize, dim: usize, s_old: &[f64]) -> Result<bool> {
         self.check_nodes(first, count)?;
         self.check_dim(dim, count)?;
         let from = first * self.dim;
-        for (at, slip) in s_old.iter().enumerate() {
-            let what = if !slip.is_finite() {
-                "the slip is not a finite number"
-            } else if *slip != 0.0 && self.rows.is_empty_row(from + at) {
-                "a row without entries never slips"
-            } else {
-                continue;
-            };
-            return Err(Error::argument("s_old", what).node(first + at / dim).entry(at).value(*slip));
+        if let Some(at) = first_non_finite(s_old) {
+            let error = Error::argument("s_old", "the slip is not a finite number");
+            return Err(error.node(first + at / dim).entry(at).value(s_old[at]));
         }
-        self.rows.rhs[from..from + s_old.len()].copy_from_slice(s_old);
-        Ok(())
+        let range = from..from + s_old.len();
+        let counted: Vec<bool> = range.clone().map(|i| self.counts(i)).collect();
+        self.rows.rhs[range.clone()].copy_from_slice(s_old);
+        Ok(range.zip(counted).any(|(i, counted)| self.counts(i) != counted))
     }
 
     /// Checks that `dim` is that of the nodes; a call with no node may have any `dim`.
@@ -247,20 +263,25 @@ impl Friction {
     }
 }
 
-/// `|b|` of a row.
-fn length(rows: &RowSet, i: usize) -> f64 {
-    rows.matrix.row(i).map(|(_, v)| v * v).sum::<f64>().sqrt()
-}
-
-/// Rows without entries, and rows so short that they are rounding, have no length to compare.
-fn check_factors(lengths: impl Iterator<Item = f64> + Clone, node: usize) -> Result<()> {
-    let most = lengths.clone().fold(0.0, f64::max);
-    let least = lengths.filter(|length| *length > SHORT * most).fold(f64::INFINITY, f64::min);
-    if most <= FACTORS * least {
-        return Ok(());
+/// Tangential rows that are rounding of the other rows of their node have no entries.
+fn drop_noise(rows: &mut RowSet, normal: &[Option<usize>], contact: &RowSet) {
+    let dim = rows.len() / normal.len().max(1);
+    let largest = |i: usize| rows.largest_entry(i);
+    let of_node = |node: usize| {
+        let own = (node * dim..(node + 1) * dim).map(largest);
+        own.chain(normal[node].map(|row| contact.largest_entry(row))).fold(0.0, f64::max)
+    };
+    let is_noise = |i: &usize| 0.0 < largest(*i) && largest(*i) <= NOISE * of_node(i / dim);
+    let dropped: Vec<usize> = (0..rows.len()).filter(is_noise).collect();
+    if dropped.is_empty() {
+        return;
     }
-    let what = "rows of this node have different factors: multiply the contact row and the tangential rows of a node by the same number";
-    Err(Error::argument("val", what).node(node).value(most / least).limit(FACTORS))
+    let mut kept = Csr::empty(rows.matrix.cols);
+    for i in 0..rows.len() {
+        kept.push_row(rows.matrix.row(i).filter(|_| dropped.binary_search(&i).is_err()));
+    }
+    rows.matrix = Arc::new(kept);
+    rows.cancelled.extend(dropped);
 }
 
 /// The error of a tangential row among the nodes to be added.
@@ -284,63 +305,4 @@ fn values_of(given: Option<&[f64]>, name: &'static str, count: usize, first: usi
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::error::Kind;
-
-    fn contact() -> RowSet {
-        let mut contact = RowSet::default();
-        let rows = RowsInput { ptr: &[0, 1, 2], body: None, dof: &[0, 2], val: &[1.0, 1.0], rhs: None };
-        contact.add(RowKind::Inequality, rows, &[0, 4]).unwrap();
-        contact
-    }
-
-    fn input<'a>(normal: &'a [i64], coefficient: &'a [f64], val: &'a [f64]) -> FrictionInput<'a> {
-        let ptr: &[usize] = if normal.len() == 1 { &[0, 1] } else { &[0, 1, 2] };
-        let rows = RowsInput { ptr, body: None, dof: &[1, 3], val, rhs: None };
-        let rows = RowsInput { dof: &rows.dof[..normal.len()], val: &val[..normal.len()], ..rows };
-        FrictionInput { dim: 1, normal, rows, coefficient: Some(coefficient), bound: None }
-    }
-
-    #[test]
-    fn a_refused_node_is_named_and_leaves_nothing_behind() {
-        let (contact, mut friction) = (contact(), Friction::default());
-        let mut refused = |given: FrictionInput| friction.add(given, &contact, &[0, 4]).unwrap_err();
-        for (error, argument, node) in [
-            (refused(input(&[0, 2], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
-            (refused(input(&[1, 1], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
-            (refused(input(&[0, -2], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
-            (refused(input(&[0, -1], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
-            (refused(input(&[0, 1], &[0.5, -0.1], &[1.0; 2])), "coefficient", 1),
-            (refused(input(&[0, 1], &[f64::NAN, 0.1], &[1.0; 2])), "coefficient", 0),
-            (refused(input(&[0, 1], &[0.5; 2], &[1.0, 2e3])), "val", 1),
-            (refused(input(&[0, 1], &[0.5; 2], &[1.0, f64::NAN])), "val", 1),
-        ] {
-            assert_eq!((error.kind, error.place.node), (Kind::Argument(argument), Some(node)));
-        }
-        assert_eq!((friction.len(), friction.rows.len(), friction.dim), (0, 0, 0));
-        assert_eq!(friction.add(input(&[1], &[0.5], &[1.0]), &contact, &[0, 4]).unwrap(), 0);
-        let taken = friction.add(input(&[1], &[0.5], &[1.0]), &contact, &[0, 4]).unwrap_err();
-        assert_eq!((taken.kind, taken.place.row), (Kind::Argument("normal_row"), Some(1)));
-        let other = FrictionInput { dim: 2, ..input(&[0], &[0.5], &[1.0]) };
-        assert_eq!(friction.add(other, &contact, &[0, 4]).unwrap_err().kind, Kind::Argument("dim"));
-    }
-
-    #[test]
-    fn laws_compliances_and_slips_are_those_of_the_nodes_named() {
-        let (contact, mut friction) = (contact(), Friction::default());
-        friction.add(input(&[0, -1], &[0.5, 0.0], &[1.0; 2]), &contact, &[0, 4]).unwrap();
-        assert!(!friction.set_law(0, 1, Some(&[0.25]), None, &contact).unwrap());
-        assert!(friction.set_law(1, 1, None, Some(&[3.0]), &contact).unwrap());
-        let refused = friction.set_law(1, 1, Some(&[0.1]), None, &contact).unwrap_err();
-        assert_eq!(refused.kind, Kind::Argument("coefficient"));
-        friction.set_compliance(1, &[0.125]).unwrap();
-        friction.set_reference(0, 2, 1, &[1.0, 2.0]).unwrap();
-        assert_eq!(friction.set_reference(0, 2, 2, &[1.0; 4]).unwrap_err().kind, Kind::Argument("dim"));
-        assert_eq!(friction.set_compliance(2, &[1.0]).unwrap_err().kind, Kind::Argument("first"));
-        assert_eq!(friction.set_compliance(1, &[1.0; 2]).unwrap_err().kind, Kind::Argument("nodes"));
-        assert_eq!((friction.rows.rhs, friction.rows.compliance), (vec![1.0, 2.0], vec![0.0, 0.125]));
-        let bounds: Vec<_> = friction.nodes.iter().map(|node| (node.coefficient, node.bound)).collect();
-        assert_eq!(bounds, [(0.25, 0.0), (0.0, 3.0)]);
-    }
-}
+mod tests;

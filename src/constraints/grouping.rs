@@ -13,7 +13,8 @@ const PARALLEL: f64 = 1e-12;
 pub struct Grouping {
     /// First row of every group; the first equality row if the group has one.
     pub leaders: Vec<usize>,
-    /// Group of every row and the sign of its direction relative to that of the leader; none for empty rows.
+    /// Group of every row and the sign of its direction relative to that of the leader; none for contact and equality rows
+    /// without entries.
     pub member: Vec<Option<(usize, f64)>>,
 }
 
@@ -32,12 +33,12 @@ impl Grouping {
         let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
         for i in (contact..tangential).chain(0..contact).chain(tangential..matrix.rows()) {
             let columns = &matrix.col[matrix.ptr[i]..matrix.ptr[i + 1]];
-            if columns.is_empty() {
-                continue;
-            }
-            if i >= tangential || alone(i) {
+            if i >= tangential || (alone(i) && !columns.is_empty()) {
                 grouping.member[i] = Some((grouping.leaders.len(), 1.0));
                 grouping.leaders.push(i);
+                continue;
+            }
+            if columns.is_empty() {
                 continue;
             }
             let candidates = known.entry(columns).or_default();

@@ -49,7 +49,7 @@ pub struct RowSet {
     pub rhs: Vec<f64>,
     /// 1/k >= 0, length / force; 0 for a rigid row.
     pub compliance: Vec<f64>,
-    /// Rows without entries, because repeated entries cancelled up to rounding.
+    /// Rows without entries, because these were rounding: of repeated entries that cancelled, or of the other rows of a node.
     pub cancelled: Vec<usize>,
     /// What was taken from the right-hand sides of the host as rounding, >= 0, length; none was if it is empty.
     pub rounding: Vec<f64>,

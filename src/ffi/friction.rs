@@ -17,7 +17,8 @@ use crate::solver::{FrictionInput, Problem, RowsInput};
 /// Coefficient 0 gives Tresca friction, bound 0 gives Coulomb friction; `bound` also acts at open nodes.
 ///
 /// If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential rows by the same
-/// factor: lengths that differ by more than a factor of 1e3 are refused. Tangential rows may be oblique, and may have no
+/// factor: lengths that differ by more than a factor of 1e3 are refused, unless struck-out supports may have shortened a
+/// row. Tangential rows may be oblique, and may have no
 /// entries. `normal_row` is the number of a contact row, never of an equality row, and each contact row belongs to at
 /// most one node. If a pair of body and unknown occurs twice in a row, the entries are summed. s_old and C_t start at
 /// zero (see feti_friction_reference and feti_friction_compliance). The data are copied, and the nodes are numbered after
@@ -87,7 +88,8 @@ pub unsafe extern "C" fn feti_friction_add_i32(
 /// Coefficient 0 gives Tresca friction, bound 0 gives Coulomb friction; `bound` also acts at open nodes.
 ///
 /// If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential rows by the same
-/// factor: lengths that differ by more than a factor of 1e3 are refused. Tangential rows may be oblique, and may have no
+/// factor: lengths that differ by more than a factor of 1e3 are refused, unless struck-out supports may have shortened a
+/// row. Tangential rows may be oblique, and may have no
 /// entries. `normal_row` is the number of a contact row, never of an equality row, and each contact row belongs to at
 /// most one node. If a pair of body and unknown occurs twice in a row, the entries are summed. s_old and C_t start at
 /// zero (see feti_friction_reference and feti_friction_compliance). The data are copied, and the nodes are numbered after
@@ -275,7 +277,7 @@ pub unsafe extern "C" fn feti_friction_compliance(
 /// | `first` | in | scalar | first node to change, from 0 |
 /// | `nodes` | in | scalar | number of nodes to change |
 /// | `dim` | in | scalar | tangential rows of a node, 1 or 2; ignored if there are no nodes |
-/// | `s_old` | in | dim * nodes | node after node, length; 0 for rows without entries |
+/// | `s_old` | in | dim * nodes | node after node, length; rows without entries slip by minus this |
 ///
 /// # Safety
 /// The array has the given shape.

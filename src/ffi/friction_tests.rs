@@ -154,7 +154,6 @@ fn what_is_wrong_with_a_node_is_named_and_nothing_is_added() {
         (Nodes { ptr: &[0, 2, 3], ..TWO }, 5, 0, -1),
         (Nodes { dof: &[1, 3], ..TWO }, 7, 1, 1),
         (Nodes { val: &[1.0, f64::INFINITY], ..TWO }, 8, 1, 1),
-        (Nodes { val: &[1.0, 2e3], ..TWO }, 8, 1, -1),
         (Nodes { coefficient: &[0.5, -0.1], ..TWO }, 10, 1, 1),
         (Nodes { coefficient: &[bad, 0.1], ..TWO }, 10, 0, 0),
         (Nodes { bound: &[0.0, -1.0], ..TWO }, 11, 1, 1),

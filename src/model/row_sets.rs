@@ -92,7 +92,10 @@ impl Model {
         dim: usize,
         s_old: &[f64],
     ) -> Result<()> {
-        self.friction.set_reference(first, count, dim, s_old)
+        if self.friction.set_reference(first, count, dim, s_old)? {
+            self.revisions.laws += 1;
+        }
+        Ok(())
     }
 
     /// Checks that `count` nodes exist and have `dim` tangential rows each.

@@ -46,7 +46,7 @@ impl Prepared {
         let mut rows = reserved(islands.len(), "groups of bodies")?;
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
         let mut pilots = vec![None; model.bodies.len()];
-        for island in &islands {
+        for island in &mut islands {
             check_compliance(island)?;
             let Metric { values, carried } = metric(model, island)?;
             for (&p, range) in island.bodies.iter().zip(&island.ranges) {
@@ -60,6 +60,7 @@ impl Prepared {
             }
             let mut own = DualRows::of(island, values, coupled(&model.settings))?;
             own.uneven |= !carried.is_empty();
+            own.level_gaps(island);
             let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix, own.first_tangential());
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
             rows.push(own);
@@ -94,7 +95,12 @@ impl Prepared {
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
         for ready in islands {
             ready.island.refresh(model, accuracy);
-            ready.whole.iter_mut().for_each(|whole| whole.island.refresh(model, accuracy));
+            ready.rows.level_gaps(&mut ready.island);
+            let Some(whole) = &mut ready.whole else { continue };
+            whole.island.refresh(model, accuracy);
+            let (level, own) = (&ready.island.contact.rows, &mut whole.island.contact.rows);
+            own.rhs.clone_from(&level.rhs);
+            own.rounding.clone_from(&level.rounding);
         }
     }
 

@@ -46,7 +46,7 @@ pub struct Nodes {
     pub numbers: Vec<usize>,
     /// Laws with the contact rows and tangential rows of the island.
     pub nodes: Vec<FrictionNode>,
-    /// Tangential rows, without those that have no entries.
+    /// Tangential rows that count: those without entries only if they slip by their s_old.
     pub tangential: Members,
 }
 
@@ -246,11 +246,11 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
     Ok(islands)
 }
 
-/// Nodes with friction that may carry a tangential force and have a tangential row with entries.
+/// Nodes with friction that may carry a tangential force and have a tangential row that counts.
 fn acting(model: &Model) -> Vec<usize> {
-    let Friction { nodes, rows, .. } = &model.friction;
-    let is_felt = |node: &usize| nodes[*node].rows().any(|row| !rows.is_empty_row(row));
-    (0..nodes.len()).filter(|&node| model.friction.acts(node, &model.contact)).filter(is_felt).collect()
+    let friction = &model.friction;
+    let counts = |node: &usize| friction.nodes[*node].rows().any(|row| friction.counts(row));
+    (0..friction.len()).filter(|&node| friction.acts(node, &model.contact)).filter(counts).collect()
 }
 
 /// Unknowns that the rows of a node touch.
@@ -276,7 +276,7 @@ fn nodes(
         let own = &mut island.friction;
         let first = own.tangential.numbers.len();
         let given = all.nodes[number];
-        own.tangential.numbers.extend(given.rows().filter(|&row| !all.rows.is_empty_row(row)));
+        own.tangential.numbers.extend(given.rows().filter(|&row| all.counts(row)));
         let count = own.tangential.numbers.len() - first;
         let normal = given.normal.and_then(|row| island.contact.numbers.binary_search(&row).ok());
         let (coefficient, bound) = law(model, number);

@@ -2,6 +2,7 @@
 
 use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
 use crate::error::Result;
+use crate::linalg::vector::NOISE;
 use crate::linalg::Csr;
 use crate::setup::islands::{Island, Members};
 use crate::setup::scaling::Scaling;
@@ -48,10 +49,13 @@ fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
     })
 }
 
-/// `s_t = 1/rms(1/s_k)` for all rows of a node, so that discs of forces remain discs.
-fn one_scale(scales: &mut [f64]) {
-    let square = scales.iter().map(|s| s.powi(-2)).sum::<f64>() / scales.len() as f64;
-    scales.fill(square.sqrt().recip());
+/// `s_t = 1/rms(1/s_k)` for all rows of a node, so that discs of forces remain discs; that of its contact row if none of them
+/// has entries.
+fn one_scale(scales: &mut [f64], normal: Option<f64>) {
+    // rows without entries have the length 0
+    let squares = scales.iter().filter(|s| **s > 0.0).map(|s| s.powi(-2)).sum::<f64>();
+    let own = (squares / scales.len() as f64).sqrt().recip();
+    scales.fill(normal.filter(|_| squares == 0.0).unwrap_or(own));
 }
 
 impl DualRows {
@@ -67,7 +71,9 @@ impl DualRows {
                 None => e,
             })?;
             if kind == RowKind::Tangential {
-                island.friction.nodes.iter().for_each(|node| one_scale(&mut scales[node.rows()]));
+                for node in &island.friction.nodes {
+                    one_scale(&mut scales[node.rows()], node.normal.map(|row| scale[row]));
+                }
             }
             for (i, s) in scales.iter().enumerate() {
                 all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
@@ -92,6 +98,29 @@ impl DualRows {
         let uneven = is_uneven(&scaled, &metric, island);
         let scaling = Scaling { unit: island.unit, scale, grouping, decoupling };
         Ok(Self { scaled, matrix, compliance, metric, scaling, coupled, contact, tangential, uneven })
+    }
+
+    /// Parallel contact rows whose gaps agree to the accuracy of the data have the tightest of these gaps: what is taken from the
+    /// others is rounding.
+    pub fn level_gaps(&self, island: &mut Island) {
+        let (accuracy, rows) = (island.accuracy, &mut island.contact.rows);
+        let mut tightest = vec![f64::INFINITY; self.groups()];
+        let members = || {
+            let contact = self.scaling.grouping.members().take_while(|(i, _)| *i < self.contact);
+            contact.filter(|(_, (group, _))| self.kind(*group) == RowKind::Inequality)
+        };
+        let scale = &self.scaling.scale;
+        for (i, (group, _)) in members() {
+            tightest[group] = tightest[group].min(scale[i] * rows.rhs[i]);
+        }
+        for (i, (group, _)) in members() {
+            let (given, level) = (rows.rhs[i], tightest[group] / scale[i]);
+            let slack = (accuracy.length * rows.largest_entry(i)).max(NOISE * given.abs());
+            if scale[i] * given != tightest[group] && given - level <= slack {
+                rows.rhs[i] = level;
+                rows.rounding[i] += (given - level).abs();
+            }
+        }
     }
 
     /// The first group that is a tangential row; all groups after it are tangential rows.

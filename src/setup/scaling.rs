@@ -10,8 +10,7 @@ use crate::platform::memory::zeros;
 /// lambda = 2^p S L'^-1 x,   c' = L^-1 S c
 /// ```
 ///
-/// where the rows of a group, multiples of each other, have one x and one c'. One row of a group, its holder, carries the
-/// force.
+/// where the rows of a group, multiples of each other, have one x and one c'. Rows of a group carry shares of the force.
 pub struct Scaling {
     /// 2^p, force / length.
     pub unit: f64,
@@ -22,9 +21,9 @@ pub struct Scaling {
 }
 
 impl Scaling {
-    /// Ratio of the force of a holder, a contact row or a tangential row, to the x of its group.
-    pub fn force_of(&self, group: usize, holder: usize) -> f64 {
-        self.scale[holder] * self.unit / self.decoupling.factor(group)
+    /// Ratio of the force of a contact row or a tangential row that carries all of it to the x of its group.
+    pub fn force_of(&self, group: usize, row: usize) -> f64 {
+        self.scale[row] * self.unit / self.decoupling.factor(group)
     }
 
     /// x for forces lambda of the rows of the stack.
@@ -36,12 +35,12 @@ impl Scaling {
         Ok(self.decoupling.apply_transposed(&x))
     }
 
-    /// lambda over the stack; only these holders carry forces.
-    pub fn forces_to_host(&self, x: &[f64], holders: &[usize]) -> Vec<f64> {
+    /// lambda over the stack; every row carries its share of the force of its group.
+    pub fn forces_to_host(&self, x: &[f64], share: &[f64]) -> Vec<f64> {
         let mut lambda = vec![0.0; self.scale.len()];
         let x = self.decoupling.solve_transposed(x.to_vec());
-        for (x, &holder) in x.iter().zip(holders) {
-            lambda[holder] = x * self.scale[holder] * self.unit;
+        for (i, (group, _)) in self.grouping.members().filter(|(i, _)| share[*i] > 0.0) {
+            lambda[i] = x[group] * self.scale[i] * self.unit * share[i];
         }
         lambda
     }

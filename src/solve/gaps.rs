@@ -6,8 +6,10 @@ pub struct Gaps {
     pub value: Vec<f64>,
     /// `c' = L^-1 value`, for the rows of the dual.
     pub dual: Vec<f64>,
-    /// The row of the group that carries its multiplier; springs have none.
+    /// The row of the group that stands for it: the first that carries its multiplier; springs have none.
     pub holder: Vec<usize>,
+    /// The part of its group's force that each row carries: equal contact rows share evenly.
+    pub share: Vec<f64>,
     /// Groups with a multiplier >= 0.
     pub bounded: Vec<bool>,
     /// Groups whose gaps far exceed all motion caused by loads and rows.

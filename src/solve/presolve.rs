@@ -31,10 +31,10 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
         value: leaders.iter().map(|&i| if idle[i] { f64::INFINITY } else { scaled[i] }).collect(),
         dual: Vec::new(),
         holder: leaders.clone(),
+        share: Vec::new(),
         bounded: (0..leaders.len()).map(is_bounded).collect(),
         far: Vec::new(),
     };
-    let rubs = rubbing(case);
     let demand = |(i, c): (usize, &f64)| match i {
         _ if idle[i] => 0.0,
         _ if i < rows.contact => (-c).max(0.0),
@@ -49,9 +49,7 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
         let contradicts = if i >= rows.contact {
             (gap - scaled[i]).abs() > slack
         } else if gaps.bounded[group] {
-            // if gaps are equal, a node with friction carries the force
-            let is_tighter = scaled[i] < gap || (scaled[i] == gap && rubs[i] && !rubs[gaps.holder[group]]);
-            if is_tighter {
+            if scaled[i] < gap {
                 (gaps.value[group], gaps.holder[group]) = (scaled[i], i);
             }
             false
@@ -69,6 +67,7 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
     if let Some(error) = contradiction(case, &gaps)? {
         return Err(error);
     }
+    share(case, &mut gaps, &scaled);
     let finite = gaps.value.iter().map(|gap| if *gap < f64::INFINITY { *gap } else { 0.0 });
     let far = if case.has_friction() { FAR_WITH_FRICTION } else { FAR };
     gaps.dual = rows.scaling.decoupling.solve(finite.collect());
@@ -76,6 +75,29 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
         gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > far * reach).collect();
     gaps.add_springs(dual.order());
     Ok(gaps)
+}
+
+/// Every row gets its share of the force of its group. Contact rows with equal gaps share evenly, and the first of them stands for
+/// the group; if some of them belong to nodes with friction, only these.
+fn share(case: Case, gaps: &mut Gaps, scaled: &[f64]) {
+    let (rows, rubs) = (&case.ready.rows, rubbing(case));
+    let equal = |i: usize| {
+        let (group, _) = rows.scaling.grouping.member[i]?;
+        let (own, tightest) = (scaled[i], gaps.value[group]);
+        let is_equal = own - tightest <= NOISE * own.abs().max(tightest.abs());
+        (is_equal && rows.kind(group) == RowKind::Inequality).then_some((group, i))
+    };
+    let mut equal: Vec<(usize, usize)> = (0..rows.contact).filter_map(equal).collect();
+    let mut rubbed = vec![false; gaps.value.len()];
+    equal.iter().for_each(|&(group, i)| rubbed[group] |= rubs[i]);
+    equal.retain(|&(group, i)| rubs[i] || !rubbed[group]);
+    let mut count = vec![0.0f64; gaps.value.len()];
+    for &(group, i) in equal.iter().rev() {
+        (gaps.holder[group], count[group]) = (i, count[group] + 1.0);
+    }
+    gaps.share = vec![0.0; scaled.len()];
+    gaps.holder.iter().for_each(|&holder| gaps.share[holder] = 1.0);
+    equal.iter().for_each(|&(group, i)| gaps.share[i] = 1.0 / count[group]);
 }
 
 /// Tangential rows of nodes without friction: they never carry a force, as if their gaps were infinite.

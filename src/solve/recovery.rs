@@ -134,7 +134,7 @@ impl<'a> Recovery<'a> {
     /// `lambda = 2^p S L'^-1 x`, mu and lambda_t, on the rows that carry the multipliers of their groups.
     pub fn forces_of_host(&self, x: &[f64]) -> [Vec<f64>; 3] {
         let rows = &self.ready.rows;
-        let mut lambda = rows.scaling.forces_to_host(x, &self.scaled.gaps.holder);
+        let mut lambda = rows.scaling.forces_to_host(x, &self.scaled.gaps.share);
         let mut mu = lambda.split_off(rows.contact);
         let tangential = mu.split_off(self.data.equalities.len());
         [lambda, mu, tangential]

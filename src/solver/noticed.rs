@@ -40,7 +40,8 @@ pub fn data(log: &Log, model: &Model) -> Result<()> {
     friction(log, model)
 }
 
-/// Notes: a coefficient of friction that is rather a percentage or an angle, a tangential row that is the normal row.
+/// Notes: a coefficient of friction that is rather a percentage or an angle, a tangential row that is the normal row, rows
+/// of very different lengths.
 fn friction(log: &Log, model: &Model) -> Result<()> {
     let (rows, base) = (&model.friction.rows, model.settings.index_base);
     let number = |node: usize| node as i64 + base;
@@ -63,6 +64,16 @@ fn friction(log: &Log, model: &Model) -> Result<()> {
         let normal = node.normal.map_or(base, number);
         log.say(LogLevel::Phase, || {
             format!("note: a tangential row of node {} is a multiple of its contact row {normal}", number(k))
+        })?;
+    }
+    let unequal = |k: usize| Some((k, model.friction.unequal(k, &model.contact)?));
+    if let Some((k, ratio)) = (0..model.friction.len()).find_map(unequal) {
+        log.say(LogLevel::Phase, || {
+            format!(
+                "note: the longest row of node {} has {ratio:.1e} times the length of its shortest: unless supports have \
+                 taken entries, multiply the rows of a node by the same number",
+                number(k)
+            )
         })?;
     }
     Ok(())
@@ -129,7 +140,7 @@ fn unusual(log: &Log, model: &Model) -> Result<()> {
             .filter(|&i| !rows.is_empty_row(i) && rows.largest_entry(i) < SHORT * others(i))
             .collect();
         for (some, what) in [
-            (&rows.cancelled, "the entries cancel up to rounding: the row constrains nothing"),
+            (&rows.cancelled, "the entries cancel up to rounding, or are rounding of the rows of their node: the row constrains nothing"),
             (&short, "its entries are below 1e-12 of those of all other rows on its bodies"),
         ] {
             let Some(first) = some.first() else { continue };

@@ -5,9 +5,13 @@ mod by_hand;
 mod drawn;
 mod driven;
 mod enumeration;
+mod equal_rows;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
+mod idle;
 mod invariance;
 mod judge;
 mod space;
+mod struck_out;
+mod tied;
 mod tresca;

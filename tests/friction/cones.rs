@@ -54,6 +54,68 @@ fn the_nearest_force_of_a_cone_is_in_it_and_no_other_is_nearer() {
     }
 }
 
+/// The nearest point p of a convex set is the one with `(v - p).(y - p) <= 0` for all its points y.
+#[test]
+fn the_nearest_forces_of_nodes_that_share_a_normal_force_are_nearest() {
+    let mut random = Random::new(15);
+    for case in 0..400 {
+        let count = 2 + case % 4;
+        let node = |i: usize, random: &mut Random| {
+            let (mu, bound) = (random.next().abs() + 0.1, [0.0, 0.4][case / 4 % 2]);
+            Node::new(Some(2 * count), &[2 * i, 2 * i + 1], mu, bound).unwrap()
+        };
+        let nodes: Vec<Node> = (0..count).map(|i| node(i, &mut random)).collect();
+        let cones = feti_contact::qp::friction::Cones::new(2 * count + 1, nodes.clone()).unwrap();
+        let v: Vec<f64> = random.vector(2 * count + 1).iter().map(|v| 3.0 * v).collect();
+        let point = cones.nearest(&v).0;
+        let beyond = |node: &Node| {
+            let force = node.of(&point);
+            length(force.tangential) - node.limit(force.normal)
+        };
+        assert!(point[2 * count] >= 0.0 && nodes.iter().all(|node| beyond(node) <= 1e-14), "{case}");
+        for _ in 0..200 {
+            let normal = 4.0 * random.next().abs();
+            let mut y = vec![normal; 2 * count + 1];
+            for node in &nodes {
+                let t = [random.next(), random.next()];
+                let by = node.limit(normal) * random.next().abs() / length(t);
+                node.put(Force { normal, tangential: t.map(|t| by * t) }, &mut y);
+            }
+            let product: f64 = (0..y.len()).map(|i| (v[i] - point[i]) * (y[i] - point[i])).sum();
+            assert!(product <= 1e-12, "{case}: {product:e}");
+        }
+    }
+}
+
+/// Nodes that share a normal row, on bodies that are held and that float, with an elastic coupling of everything.
+#[test]
+fn nodes_that_share_a_normal_force_are_solved() {
+    let mut random = Random::new(16);
+    let mut solved = 0;
+    for case in 0..60 {
+        let (count, dim) = (2 + case % 3, 1 + case % 2);
+        let m = count * dim + 1;
+        let node = |i: usize| {
+            let tangents: Vec<usize> = (0..dim).map(|k| dim * i + k).collect();
+            Node::new(Some(m - 1), &tangents, 0.1 + 0.1 * i as f64, 0.0).unwrap()
+        };
+        let mut given = Given::new(random.positive(m, 0.3), random.vector(m), (0..count).map(node).collect());
+        given.d[m - 1] += 1.0;
+        if case % 4 == 3 {
+            let mut g = random.vector(m).iter().map(|v| 0.1 * v).collect::<Vec<_>>();
+            g[m - 1] = 1.0;
+            given = given.floating(&[g], vec![0.8]);
+        }
+        let found = given.solved();
+        if found.verdict == feti_contact::qp::Verdict::Solved {
+            let (laws, balance) = given.missed(&found);
+            assert!(laws < 1e-8 && balance < 1e-9, "{case}: {laws:e} {balance:e}");
+            solved += 1;
+        }
+    }
+    assert!(solved >= 59, "{solved}");
+}
+
 #[test]
 fn the_law_of_coulomb_is_met_by_stick_inside_and_slip_along_the_force_alone() {
     let node = Node::new(Some(0), &[1, 2], 0.5, 0.1).unwrap();

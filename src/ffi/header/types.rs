@@ -310,7 +310,7 @@ pub struct feti_progress {
     pub steps: i64,
     /// Products with the dual operator F so far.
     pub products: i64,
-    /// Inequality rows with a force; a set of parallel rows counts once.
+    /// Inequality rows with a force.
     pub active: i64,
     /// Norm of the projected gradient divided by the norm at which the solve stops; NaN in the setup, like the next three
     /// entries.

@@ -3,7 +3,8 @@
 
 use crate::error::{Error, Kind, Result};
 
-/// One contact node. Without tangential rows it is a half line: contact without friction.
+/// One contact node. Without tangential rows it is a half line: contact without friction. Nodes may share a normal row, of which each
+/// has the tangential forces that its own mu and bound allow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
     /// Its normal row, n >= 0; none: only the bound limits the tangential force.
@@ -11,6 +12,10 @@ pub struct Node {
     tangents: [usize; 2],
     /// Number of tangential rows: 0, 1 or 2.
     count: usize,
+    /// The normal row is that of the node before.
+    follows: bool,
+    /// Places from the coordinate of the normal row to the first tangential one.
+    pub behind: usize,
     /// Coefficient and bound of friction in scaled units, `|t| <= bound + mu n`.
     pub mu: f64,
     pub bound: f64,
@@ -50,11 +55,16 @@ impl Node {
         }
         let mut rows = [0; 2];
         rows[..tangents.len()].copy_from_slice(tangents);
-        Ok(Self { normal, tangents: rows, count: tangents.len(), mu, bound })
+        Ok(Self { normal, tangents: rows, count: tangents.len(), follows: false, behind: 1, mu, bound })
     }
 
     pub fn tangents(&self) -> &[usize] {
         &self.tangents[..self.count]
+    }
+
+    /// Its normal row, unless the node before has it already.
+    pub fn own_normal(&self) -> Option<usize> {
+        self.normal.filter(|_| !self.follows)
     }
 
     pub fn of(&self, x: &[f64]) -> Force {
@@ -101,12 +111,46 @@ impl Node {
         (force, Place::Rim { along, ratio })
     }
 
+    /// The nearest force with this normal part.
+    fn beside(&self, tangential: [f64; 2], normal: f64) -> (Force, Place) {
+        let (length, limit) = (length(tangential), self.limit(normal));
+        if length <= limit {
+            let place = if normal > 0.0 { Place::Inside } else { Place::Open };
+            return (Force { normal, tangential }, place);
+        }
+        let (along, ratio) = (direction(tangential), limit / length);
+        let place = if normal > 0.0 { Place::Surface { along, ratio } } else { Place::Rim { along, ratio } };
+        (Force { normal, tangential: along.map(|u| limit * u) }, place)
+    }
+
     /// NAT, the law of Coulomb: `(n+, min(|t|, b) t/|t|)`, `b = bound + mu n+`.
     pub fn natural(&self, trial: Force) -> Force {
         let (normal, length) = (trial.normal.max(0.0), length(trial.tangential));
         let limit = self.limit(normal);
         let by = if length > limit { limit / length } else { 1.0 };
         Force { normal, tangential: trial.tangential.map(|t| by * t) }
+    }
+}
+
+/// The n >= 0 of least `(n - v_n)^2 + sum (|t_i| - bound_i - mu_i n)_+^2` over nodes that share it. Its derivative is concave:
+/// Newton's steps from below do not pass the zero, and end once no further node comes within its limit.
+fn shared_normal(nodes: &[Node], v: &[f64]) -> f64 {
+    let given = nodes[0].of(v).normal;
+    let mut normal = given.max(0.0);
+    loop {
+        let (mut top, mut bottom) = (given, 1.0);
+        for node in nodes {
+            let length = length(node.of(v).tangential);
+            if length > node.limit(normal) {
+                top += node.mu * (length - node.bound);
+                bottom += node.mu * node.mu;
+            }
+        }
+        let next = top / bottom;
+        if !(next > normal) {
+            return normal;
+        }
+        normal = next;
     }
 }
 
@@ -134,9 +178,18 @@ pub struct Cones {
 }
 
 impl Cones {
-    pub fn new(order: usize, nodes: Vec<Node>) -> Result<Self> {
+    /// Nodes that share a normal row come one after the other.
+    pub fn new(order: usize, mut nodes: Vec<Node>) -> Result<Self> {
+        for k in 0..nodes.len() {
+            let before = k.checked_sub(1).map(|before| nodes[before]);
+            let shared = before.filter(|before| before.normal.is_some() && before.normal == nodes[k].normal);
+            nodes[k].follows = shared.is_some();
+            nodes[k].behind = shared.map_or(1, |before| before.behind + before.count);
+        }
         let mut taken = vec![false; order];
-        for &row in nodes.iter().flat_map(|node| node.normal.iter().chain(node.tangents())) {
+        let rows =
+            nodes.iter().flat_map(|node| node.own_normal().into_iter().chain(node.tangents().to_vec()));
+        for row in rows {
             match taken.get_mut(row) {
                 Some(taken) if !*taken => *taken = true,
                 Some(_) => {
@@ -168,6 +221,29 @@ impl Cones {
 
     pub fn free(&self) -> &[usize] {
         &self.free
+    }
+
+    /// The nodes by their normal rows.
+    pub fn groups(&self) -> impl Iterator<Item = &[Node]> {
+        self.nodes.chunk_by(|_, next| next.follows)
+    }
+
+    /// PI, the nearest point of all cones, and where it is at each node.
+    pub fn nearest(&self, v: &[f64]) -> (Vec<f64>, Vec<Place>) {
+        let (mut point, mut places) = (v.to_vec(), Vec::with_capacity(self.nodes.len()));
+        for nodes in self.groups() {
+            let shared = (nodes.len() > 1).then(|| shared_normal(nodes, v));
+            for node in nodes {
+                let given = node.of(v);
+                let (force, place) = match shared {
+                    Some(normal) => node.beside(given.tangential, normal),
+                    None => node.nearest(given),
+                };
+                node.put(force, &mut point);
+                places.push(place);
+            }
+        }
+        (point, places)
     }
 
     /// These rows without friction: tangential rows carry no force.

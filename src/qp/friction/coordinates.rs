@@ -56,13 +56,14 @@ impl Coordinate {
 
 /// Every row as a coordinate, in the order of the coordinates of a face: rows of nodes, node by node, then free rows.
 pub fn of_rows(cones: &Cones) -> Vec<Coordinate> {
-    let of_nodes = cones.nodes().iter().flat_map(|node| node.normal.iter().chain(node.tangents()));
+    let of_nodes =
+        cones.nodes().iter().flat_map(|node| node.own_normal().into_iter().chain(node.tangents().to_vec()));
     let equation = Law::Free { damping: 0.0, shift: 0.0 };
-    of_nodes.chain(cones.free()).map(|&row| Coordinate::row(row, equation)).collect()
+    of_nodes.chain(cones.free().iter().copied()).map(|row| Coordinate::row(row, equation)).collect()
 }
 
-/// Rows of G' of every coordinate, with a pattern common to all faces: a normal coordinate has the columns of the whole
-/// node, since friction couples it to the others.
+/// Rows of G' of every coordinate, with a pattern common to all faces: a normal coordinate has the columns of all nodes with this
+/// normal row, since friction couples it to the others.
 pub fn pattern(cones: &Cones, g_transposed: &Csr) -> Csr {
     let mut pattern = Csr::empty(g_transposed.cols);
     let columns_of = |rows: &mut dyn Iterator<Item = usize>| {
@@ -71,13 +72,16 @@ pub fn pattern(cones: &Cones, g_transposed: &Csr) -> Csr {
         columns.dedup();
         columns
     };
-    for node in cones.nodes() {
-        let tangential = columns_of(&mut node.tangents().iter().copied());
-        if node.normal.is_some() {
-            let all = columns_of(&mut node.normal.into_iter().chain(node.tangents().iter().copied()));
+    for nodes in cones.groups() {
+        if let Some(normal) = nodes[0].normal {
+            let tangents = nodes.iter().flat_map(|node| node.tangents().iter().copied());
+            let all = columns_of(&mut std::iter::once(normal).chain(tangents));
             pattern.push_row(all.into_iter().map(|j| (j, 0.0)));
         }
-        node.tangents().iter().for_each(|_| pattern.push_row(tangential.iter().map(|&j| (j, 0.0))));
+        for node in nodes {
+            let tangential = columns_of(&mut node.tangents().iter().copied());
+            node.tangents().iter().for_each(|_| pattern.push_row(tangential.iter().map(|&j| (j, 0.0))));
+        }
     }
     for &row in cones.free() {
         pattern.push_row(g_transposed.row(row).map(|(j, _)| (j, 0.0)));

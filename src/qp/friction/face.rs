@@ -44,8 +44,8 @@ impl Face {
                 () => State::Stick,
             };
             let normal = if closed { EQUATION } else { Law::Held { value: 0.0 } };
-            face.coordinates.extend(node.normal.map(|row| Coordinate::row(row, normal)));
-            let coupling = Some((1, node.mu)).filter(|_| closed && state == State::Slip);
+            face.coordinates.extend(node.own_normal().map(|row| Coordinate::row(row, normal)));
+            let coupling = Some((node.behind, node.mu)).filter(|_| closed && state == State::Slip);
             let (along, first, second) = match state {
                 State::Open => ([1.0, 0.0], Law::Held { value: 0.0 }, Law::Held { value: 0.0 }),
                 State::Stick => ([1.0, 0.0], EQUATION, EQUATION),

@@ -139,12 +139,7 @@ fn trial(problem: &FrictionProblem, y: &[f64], beta: Vec<f64>) -> Trial {
     let g_transposed = problem.g_transposed;
     let mut v = y.to_vec();
     v.iter_mut().enumerate().for_each(|(i, v)| *v += g_transposed.row_dot(i, &beta));
-    let (mut point, mut places) = (v.clone(), Vec::with_capacity(problem.cones.nodes().len()));
-    for node in problem.cones.nodes() {
-        let (force, place) = node.nearest(node.of(&v));
-        node.put(force, &mut point);
-        places.push(place);
-    }
+    let (point, places) = problem.cones.nearest(&v);
     let mut left = problem.e.to_vec();
     g_transposed.mul_transposed_add(-1.0, &point, &mut left);
     let phi = dot(&v, &point) - 0.5 * dot(&point, &point) - dot(problem.e, &beta);
@@ -167,23 +162,31 @@ fn armijo(problem: &FrictionProblem, y: &[f64], now: &Trial, direction: &[f64]) 
 }
 
 /// PI' as a sum of `weight^2 v v'`: v is a coordinate; on the surface of a cone, the normal coordinate includes the one
-/// along the force.
+/// along the forces of its nodes.
 pub fn derivative(cones: &Cones, places: &[Place]) -> (Vec<Coordinate>, Vec<f64>) {
     let held = Law::Held { value: 0.0 };
     let (mut face, mut weights) = (Face::empty(cones, 1.0), Vec::with_capacity(cones.order()));
-    for (node, place) in cones.nodes().iter().zip(places) {
-        let (along, coupling, own) = match *place {
-            Place::Inside => ([1.0, 0.0], None, [1.0, 1.0, 1.0]),
-            Place::Open => ([1.0, 0.0], None, [0.0, 1.0, 1.0]),
-            Place::Rim { along, ratio } => (along, None, [0.0, 0.0, ratio.sqrt()]),
-            Place::Surface { along, ratio } => {
-                (along, Some((1, node.mu)), [1.0 / 1.0f64.hypot(node.mu), 0.0, ratio.sqrt()])
+    let mut places = places.iter();
+    for nodes in cones.groups() {
+        let normal = weights.len();
+        face.coordinates.extend(nodes[0].normal.map(|row| Coordinate::row(row, held)));
+        weights.extend(nodes[0].normal.map(|_| 0.0));
+        let mut size = 1.0f64;
+        for (node, place) in nodes.iter().zip(&mut places) {
+            let (along, coupling, own) = match *place {
+                Place::Inside | Place::Open => ([1.0, 0.0], None, [1.0, 1.0]),
+                Place::Rim { along, ratio } => (along, None, [0.0, ratio.sqrt()]),
+                Place::Surface { along, ratio } => {
+                    size = size.hypot(node.mu);
+                    (along, Some((node.behind, node.mu)), [0.0, ratio.sqrt()])
+                }
+            };
+            face.push_tangents(node.tangents(), along, coupling, [held, held]);
+            weights.extend_from_slice(&own[..node.tangents().len()]);
+            if node.normal.is_some() && matches!(place, Place::Inside | Place::Surface { .. }) {
+                weights[normal] = 1.0 / size;
             }
-        };
-        face.coordinates.extend(node.normal.map(|row| Coordinate::row(row, held)));
-        weights.extend(node.normal.map(|_| own[0]));
-        face.push_tangents(node.tangents(), along, coupling, [held, held]);
-        weights.extend_from_slice(&own[1..=node.tangents().len()]);
+        }
     }
     face.finish(cones);
     weights.resize(cones.order(), 1.0);

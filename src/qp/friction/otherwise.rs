@@ -122,7 +122,7 @@ impl Run<'_, '_> {
         let sticks = Law::Free { damping: 0.0, shift: 0.0 };
         let mut k = 0;
         for (i, node) in self.problem.cones.nodes().iter().enumerate() {
-            k += usize::from(node.normal.is_some());
+            k += usize::from(node.own_normal().is_some());
             let carries = face.closed[i] || face.states[i] != State::Open;
             for at in &mut face.coordinates[k..k + node.tangents().len()] {
                 at.coupling = None;

@@ -97,7 +97,8 @@ fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), by: 
         let p = slope(trial.normal, eps).max(SMALLEST);
         let damping = slope(-trial.normal, eps) / (rho * p);
         let shift = r[row] + damping * now.normal - missed / (rho * p);
-        face.coordinates.push(Coordinate::row(row, Law::Free { damping, shift }));
+        let coordinate = Coordinate::row(row, Law::Free { damping, shift });
+        face.coordinates.extend(node.own_normal().map(|_| coordinate));
     }
     let limit = node.limit(normal) + by.relaxed * eps;
     let size = length(trial.tangential);
@@ -112,7 +113,7 @@ fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), by: 
     let shift = slip + damping * slack - missed_along / (rho * disc.slope);
     let first = Law::Free { damping, shift };
     let second = Law::Free { damping: disc.rest / (rho * disc.ratio), shift: 0.0 };
-    let coupling = node.normal.map(|_| (1, coupling));
+    let coupling = node.normal.map(|_| (node.behind, coupling));
     face.push_tangents(node.tangents(), along, coupling, [first, second]);
     face.closed.push(node.normal.is_some() && trial.normal > 0.0);
     face.states.push(if size > limit { State::Slip } else { State::Stick });
@@ -127,7 +128,7 @@ pub fn missed(cones: &Cones, x: &[f64], r: &[f64], rho: f64, by: Smoothing) -> f
         let (now, trial) = (node.of(x), node.of(&xi));
         let normal = node.normal.map_or(0.0, |_| phi(trial.normal, eps));
         let disc = Disc::of(length(trial.tangential), node.limit(normal) + by.relaxed * eps, eps);
-        square += (now.normal - normal).powi(2);
+        square += node.own_normal().map_or(0.0, |_| (now.normal - normal).powi(2));
         square += (0..2).map(|k| (now.tangential[k] - disc.ratio * trial.tangential[k]).powi(2)).sum::<f64>();
     }
     square.sqrt()

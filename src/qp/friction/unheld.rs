@@ -82,17 +82,21 @@ struct Resisted {
     /// Direction and size of the slip.
     along: [f64; 2],
     slip: f64,
-    /// Resistance of its normal row together with friction; below 0 the row opens.
+    /// Resistance of its normal row together with friction, also that of nodes that share the row; below 0 the row opens.
     by: f64,
 }
 
 impl Resisted {
-    fn of(node: &Node, v: &[f64]) -> Self {
-        let force = node.of(v);
-        let slip = norm(&force.tangential);
-        let along = if slip > 0.0 { force.tangential.map(|t| t / slip) } else { [1.0, 0.0] };
-        let by = if node.normal.is_some() { force.normal + node.mu * slip } else { 0.0 };
-        Self { force, along, slip, by }
+    fn of(nodes: &[Node], v: &[f64]) -> Vec<Self> {
+        let slip = |node: &Node| norm(&node.of(v).tangential);
+        let drawn = nodes.iter().map(|node| node.mu * slip(node));
+        let by = nodes[0].normal.map_or(0.0, |row| drawn.fold(v[row], |by, drawn| by + drawn));
+        let of = |node: &Node| {
+            let (force, slip) = (node.of(v), slip(node));
+            let along = if slip > 0.0 { force.tangential.map(|t| t / slip) } else { [1.0, 0.0] };
+            Self { force, along, slip, by }
+        };
+        nodes.iter().map(of).collect()
     }
 }
 
@@ -119,9 +123,9 @@ fn settled(problem: &FrictionProblem, motions: &Motions, mut beta: Vec<f64>) -> 
     let mut near = None;
     for _ in 0..ROUNDS {
         let v: Vec<f64> = (0..problem.b.len()).map(|i| problem.g_transposed.row_dot(i, &beta)).collect();
-        let nodes: Vec<Resisted> = problem.cones.nodes().iter().map(|node| Resisted::of(node, &v)).collect();
+        let nodes: Vec<Resisted> = problem.cones.groups().flat_map(|nodes| Resisted::of(nodes, &v)).collect();
         let near = *near.get_or_insert_with(|| NEAR * nodes.iter().map(|node| node.by).fold(0.0, f64::max));
-        let (mut places, mut resists) = (Vec::new(), Vec::new());
+        let (mut places, mut resists, mut normal) = (Vec::new(), Vec::new(), 0);
         for (node, now) in problem.cones.nodes().iter().zip(&nodes) {
             let Resisted { force, along, slip, by } = *now;
             let ratio = 0.0;
@@ -129,11 +133,18 @@ fn settled(problem: &FrictionProblem, motions: &Motions, mut beta: Vec<f64>) -> 
                 true if slip <= near => {
                     (Place::Inside, [force.normal, force.tangential[0], force.tangential[1]])
                 }
-                true if node.normal.is_some() => (Place::Surface { along, ratio }, [by, 0.0, 0.0]),
+                true if node.normal.is_some() => {
+                    (Place::Surface { along, ratio }, [force.normal + node.mu * slip, 0.0, 0.0])
+                }
                 _ => (Place::Rim { along, ratio }, [0.0; 3]),
             };
             places.push(place);
-            resists.extend(node.normal.map(|_| of[0]));
+            if node.own_normal().is_some() {
+                normal = resists.len();
+                resists.push(of[0]);
+            } else if matches!(place, Place::Surface { .. }) {
+                resists[normal] += node.mu * slip;
+            }
             resists.extend_from_slice(&of[1..=node.tangents().len()]);
         }
         let (coordinates, weights) = derivative(problem.cones, &places);
@@ -149,12 +160,7 @@ fn settled(problem: &FrictionProblem, motions: &Motions, mut beta: Vec<f64>) -> 
 fn trial(problem: &FrictionProblem, beta: Vec<f64>, delta: f64) -> Trial {
     let g_transposed = problem.g_transposed;
     let v: Vec<f64> = (0..problem.b.len()).map(|i| g_transposed.row_dot(i, &beta) / delta).collect();
-    let (mut forces, mut places) = (v.clone(), Vec::with_capacity(problem.cones.nodes().len()));
-    for node in problem.cones.nodes() {
-        let (force, place) = node.nearest(node.of(&v));
-        node.put(force, &mut forces);
-        places.push(place);
-    }
+    let (forces, places) = problem.cones.nearest(&v);
     let mut slope = beta.clone();
     axpy(-1.0, problem.e, &mut slope);
     g_transposed.mul_transposed_add(1.0, &forces, &mut slope);

@@ -1,5 +1,7 @@
 //! The laws of the nodes of an island for the rows of its dual, and the preconditioner on their faces.
 
+use std::collections::HashMap;
+
 use crate::constraints::FrictionNode;
 use crate::dual::{Preconditioner, TurnedFace, TurnedRow};
 use crate::error::Result;
@@ -9,7 +11,7 @@ use crate::qp::Qp;
 use crate::setup::Ready;
 use crate::solve::gaps::Gaps;
 
-/// A node in the rows of the dual: its normal row, if it carries the force of its group, tangential rows, mu' and bound'.
+/// A node in the rows of the dual: its normal row, if it carries a share of the force of its group, tangential rows, mu' and bound'.
 struct DualNode {
     normal: Option<usize>,
     tangents: Vec<usize>,
@@ -17,18 +19,19 @@ struct DualNode {
     bound: f64,
 }
 
-/// With `lambda_n = a_n x_n` and `lambda_t = a_t x_t`: `|x_t| <= bound / a_t + mu (a_n / a_t) x_n`.
+/// With `lambda_n = a_n x_n`, a_n by its share, and `lambda_t = a_t x_t`: `|x_t| <= bound / a_t + mu (a_n / a_t) x_n`.
 fn dual_node(ready: &Ready, gaps: &Gaps, node: &FrictionNode) -> DualNode {
     let (rows, scaling) = (&ready.rows, &ready.rows.scaling);
     let group_of = |row: usize| scaling.grouping.member[row].map(|(group, _)| group);
-    let carries =
-        |row: &usize| group_of(*row).filter(|&group| gaps.bounded[group] && gaps.holder[group] == *row);
-    let normal = node.normal.and_then(|row| carries(&row));
+    let carries = |row: usize| {
+        let group = group_of(row).filter(|&group| gaps.bounded[group] && gaps.share[row] > 0.0)?;
+        Some((group, scaling.force_of(group, row) * gaps.share[row]))
+    };
+    let normal = node.normal.and_then(carries);
     let tangents: Vec<usize> = node.rows().filter_map(|row| group_of(rows.tangential + row)).collect();
-    let of = |group: usize| scaling.force_of(group, gaps.holder[group]);
-    let by = tangents.first().map_or(1.0, |&group| of(group));
-    let coefficient = normal.map_or(0.0, |group| node.coefficient * (of(group) / by));
-    DualNode { normal, tangents, coefficient, bound: node.bound / by }
+    let by = tangents.first().map_or(1.0, |&group| scaling.force_of(group, gaps.holder[group]));
+    let coefficient = normal.map_or(0.0, |(_, force)| node.coefficient * (force / by));
+    DualNode { normal: normal.map(|(group, _)| group), tangents, coefficient, bound: node.bound / by }
 }
 
 /// All laws on a subset of the rows of the dual, numbered within the subset: nodes with friction, half lines of other
@@ -36,17 +39,21 @@ fn dual_node(ready: &Ready, gaps: &Gaps, node: &FrictionNode) -> DualNode {
 pub fn cones(ready: &Ready, gaps: &Gaps, rows: &[usize]) -> Result<Cones> {
     let mut place = filled(gaps.bounded.len(), None, "friction")?;
     rows.iter().enumerate().for_each(|(k, &row)| place[row] = Some(k));
-    let (mut nodes, mut taken) = (Vec::new(), filled(rows.len(), false, "friction")?);
+    let (mut nodes, mut first) = (Vec::new(), HashMap::new());
     for node in ready.island.friction.nodes.iter().filter(|node| node.has_friction()) {
         let DualNode { normal, tangents, coefficient, bound } = dual_node(ready, gaps, node);
         let tangents: Vec<usize> = tangents.iter().filter_map(|&row| place[row]).collect();
         let normal = normal.and_then(|row| place[row]);
         let coefficient = if normal.is_some() { coefficient } else { 0.0 };
-        normal.iter().for_each(|&row| taken[row] = true);
-        nodes.push(Node::new(normal, &tangents, coefficient, bound)?);
+        let next = nodes.len();
+        let first = normal.map_or(next, |row| *first.entry(row).or_insert(next));
+        nodes.push((first, Node::new(normal, &tangents, coefficient, bound)?));
     }
+    // nodes that share a normal row come one after the other
+    nodes.sort_by_key(|(first, _)| *first);
+    let mut nodes: Vec<Node> = nodes.into_iter().map(|(_, node)| node).collect();
     for (k, &row) in rows.iter().enumerate() {
-        if gaps.bounded[row] && !taken[k] {
+        if gaps.bounded[row] && !first.contains_key(&k) {
             nodes.push(Node::new(Some(k), &[], 0.0, 0.0)?);
         }
     }

@@ -1,0 +1,70 @@
+//! Bodies without a load beside bodies with one, given by their elements and cut into pieces.
+
+use decks::random::Random;
+use decks::{Block, Friction, Rows};
+use feti_contact::solver::{Outcome, Problem, RowKind};
+
+use crate::hand_over;
+
+/// A block in the plane, each of whose unknowns has a spring: the unknowns of its elements, and their matrices.
+fn block(random: &mut Random, elements: usize) -> (usize, Vec<(Vec<usize>, Vec<f64>)>) {
+    let block = Block { dimension: 2, elements: [elements, elements, 1], ..Block::default() };
+    let unknowns = 2 * block.nodes();
+    let of = |e: usize| {
+        let low = block.low(e);
+        let corners = (0..4).map(|c| block.node([low[0] + (c & 1), low[1] + (c >> 1), 0]));
+        (corners.flat_map(|node| [2 * node, 2 * node + 1]).collect(), block.element())
+    };
+    let mut all: Vec<_> = (0..block.volume()).map(of).collect();
+    all.extend((0..unknowns).map(|j| (vec![j], vec![random.decades(-2.0, 0.0)])));
+    (unknowns, all)
+}
+
+fn give(problem: &mut Problem, (unknowns, elements): &(usize, Vec<(Vec<usize>, Vec<f64>)>)) {
+    let body = problem.add_body(*unknowns).unwrap();
+    let mut ptr = vec![0];
+    elements.iter().for_each(|(dof, _)| ptr.push(ptr[ptr.len() - 1] + dof.len()));
+    let dof: Vec<i64> = elements.iter().flat_map(|(dof, _)| dof.iter().map(|j| *j as i64)).collect();
+    problem.set_mesh(body, &ptr, &dof).unwrap();
+    for (e, (dof, k)) in elements.iter().enumerate() {
+        problem.add_element(body, e, dof.len(), k, dof.len()).unwrap();
+    }
+}
+
+#[test]
+fn a_cut_body_without_load_rests_whatever_its_friction_may_hold() {
+    let mut random = Random::new(13);
+    for case in 0..200 {
+        let bodies: Vec<_> = (0..4).map(|p| block(&mut random, 2 + (case + p) % 3)).collect();
+        let offsets: Vec<usize> = (0..5).map(|p| bodies[..p].iter().map(|body| body.0).sum()).collect();
+        let mut taken = vec![false; offsets[4]];
+        let mut draw = random.clone();
+        let mut at = |p: usize| loop {
+            let j = offsets[p] + draw.below(bodies[p].0);
+            if !std::mem::replace(&mut taken[j], true) {
+                return j;
+            }
+        };
+        let (mut contact, mut friction) = (Rows::none(offsets[4]), Friction::none(1, offsets[4]));
+        let gaps: Vec<f64> = (0..4).map(|_| random.between(0.02, 0.1)).collect();
+        // the last two bodies overlap; all gaps to those without load stay open
+        contact.push(&[(at(2), 0.3), (at(3), -0.3)], -0.002);
+        for p in 0..4 {
+            contact.push(&[(at(p), 1.0), (at((p + 1) % 4), -1.0)], gaps[p]);
+            friction.push(Some(p + 1), &[&[(at(p), 1.0)]], 0.3, 0.1);
+            friction.push(None, &[&[(at(p), -1.0)]], 0.0, 0.02);
+        }
+        let loads = [2, 3].map(|p| random.normals(bodies[p].0, 0.005));
+        for pieces in [1, 2, 3] {
+            let mut problem = Problem::new();
+            problem.set_i64("pieces", pieces).unwrap();
+            bodies.iter().for_each(|body| give(&mut problem, body));
+            [2, 3].iter().zip(&loads).for_each(|(&p, load)| problem.set_load(p, load).unwrap());
+            problem.set_text("dual_operator=explicit direct_limit=0").unwrap();
+            hand_over::add_rows(&mut problem, RowKind::Inequality, &contact).unwrap();
+            hand_over::add_friction(&mut problem, &friction).unwrap();
+            let report = problem.solve().unwrap_or_else(|error| panic!("{case} {pieces}: {error}"));
+            assert_eq!(report.outcome, Outcome::Solved, "{case} {pieces}: {:?}", report.certificate);
+        }
+    }
+}
