@@ -8,5 +8,6 @@ mod enumeration;
 mod hand_over;
 mod invariance;
 mod judge;
+mod slides;
 mod space;
 mod tresca;

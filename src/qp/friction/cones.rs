@@ -170,12 +170,6 @@ impl Cones {
         &self.free
     }
 
-    /// These rows without friction: tangential rows carry no force.
-    pub fn frictionless(&self) -> Self {
-        let without = |node: &Node| Node { mu: 0.0, bound: 0.0, ..*node };
-        Self { nodes: self.nodes.iter().map(without).collect(), free: self.free.clone(), order: self.order }
-    }
-
     /// These sets with all coefficients multiplied by `by`.
     pub fn wider(&self, by: f64) -> Self {
         let nodes = self.nodes.iter().map(|node| Node { mu: by * node.mu, ..*node }).collect();

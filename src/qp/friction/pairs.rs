@@ -19,13 +19,13 @@ const CUT: f64 = 1e-12;
 const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// Data that solves pass to later solves with equal F, G and rows.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub struct Pairs {
     kept: VecDeque<Pair>,
 }
 
 /// A direction of length 1 with its image.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Pair {
     pub v: Vec<f64>,
     /// `F v`
@@ -97,6 +97,22 @@ impl Pairs {
         } else {
             Self::default()
         }
+    }
+
+    /// Copies for a problem with `more` rows, on which they are 0.
+    pub fn extended(&self, more: usize) -> Self {
+        let mut all = self.clone();
+        for pair in &mut all.kept {
+            pair.v.resize(pair.v.len() + more, 0.0);
+            pair.image.resize(pair.image.len() + more, 0.0);
+        }
+        all
+    }
+
+    /// Images for supports, the rows from `first` on, whose stiffness is multiplied by `by`.
+    pub fn stiffen(&mut self, first: usize, by: f64) {
+        let images = self.kept.iter_mut().flat_map(|pair| &mut pair.image[first..]);
+        images.for_each(|image| *image /= by);
     }
 
     pub fn keep(&mut self, pair: Pair) {
