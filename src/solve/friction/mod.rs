@@ -99,7 +99,7 @@ fn on_rows(
     if let (Verdict::Stalled, Some(slide)) = (&found.verdict, &found.slide) {
         return Err(named(case, slide, found.counts.starts)?);
     }
-    ready.pairs.keep(rows, std::mem::take(&mut found.pairs));
+    ready.pairs.keep(rows, std::mem::take(&mut found.pairs), ready.dual.product_work());
     ready.pairs.keep_answer(DualAnswer {
         rows: rows.to_vec(),
         x: found.x.clone(),
