@@ -9,6 +9,7 @@ mod enumeration;
 mod hostile;
 mod mindlin;
 mod problem;
+mod slides;
 mod spheres;
 mod states;
 mod supports;

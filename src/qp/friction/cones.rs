@@ -13,7 +13,7 @@ pub struct Node {
     /// Number of tangential rows: 0, 1 or 2.
     count: usize,
     /// The normal row is that of the node before.
-    follows: bool,
+    pub follows: bool,
     /// Places from the coordinate of the normal row to the first tangential one.
     pub behind: usize,
     /// Coefficient and bound of friction in scaled units, `|t| <= bound + mu n`.
@@ -244,12 +244,6 @@ impl Cones {
             }
         }
         (point, places)
-    }
-
-    /// These rows without friction: tangential rows carry no force.
-    pub fn frictionless(&self) -> Self {
-        let without = |node: &Node| Node { mu: 0.0, bound: 0.0, ..*node };
-        Self { nodes: self.nodes.iter().map(without).collect(), free: self.free.clone(), order: self.order }
     }
 
     /// These sets with all coefficients multiplied by `by`.

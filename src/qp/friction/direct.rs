@@ -38,8 +38,21 @@ impl Dense {
         Ok(Some(Self { f }))
     }
 
-    /// dx and da with `[L; w (W'F + D S)] dx - w A'da = -residual`, `G dx = e - G x`.
+    /// F with supports of this stiffness as further rows.
+    pub fn supported(&self, supports: usize, kappa: f64) -> Result<Self> {
+        let m = self.f.rows;
+        let mut f = Matrix::zeros(m + supports, m + supports)?;
+        (0..m).for_each(|j| f.col_mut(j)[..m].copy_from_slice(self.f.col(j)));
+        (m..m + supports).for_each(|k| f.set(k, k, 1.0 / kappa));
+        Ok(Self { f })
+    }
+
     pub fn step(&self, problem: &FrictionProblem, face: &Face, now: &Point) -> Result<Step> {
+        self.solved(problem, face, now).map(|(step, _)| step)
+    }
+
+    /// dx and da with `[L; w (W'F + D S)] dx - w A'da = -residual`, `G dx = e - G x`.
+    pub fn solved(&self, problem: &FrictionProblem, face: &Face, now: &Point) -> Result<(Step, Vec<f64>)> {
         interrupt::check()?;
         tally::costly();
         let (m, r) = (problem.b.len(), problem.e.len());
@@ -70,9 +83,9 @@ impl Dense {
         problem.g_transposed.mul_transposed_add(-1.0, &now.x, &mut left);
         target[m..].copy_from_slice(&left);
         let mut dx = least_squares(&matrix, &target, CUT)?;
-        dx.truncate(m);
+        let turn = dx.split_off(m);
         let mut dg = vec![0.0; m];
         dx.iter().enumerate().for_each(|(j, by)| axpy(*by, self.f.col(j), &mut dg));
-        Ok(Step { dx, dg, rest: 0.0 })
+        Ok((Step { dx, dg, rest: 0.0 }, turn))
     }
 }

@@ -84,11 +84,8 @@ impl<'a> Run<'a, '_> {
         (first, alpha): (Projected, Vec<f64>),
         judge: &mut dyn AcceptanceTest,
     ) -> Result<Verdict> {
-        let g = self.gradient(&first.point)?;
-        self.measure(&g, limits.tolerance)?;
         let laws = Laws { cones: self.problem.cones, rho: RHO };
-        self.allow_for_balance(laws, &first.point)?;
-        let start = self.begin(laws, &first.point, &g, &alpha)?;
+        let start = self.begun(limits.tolerance, &first, &alpha)?;
         self.last.clone_from(&start);
         if !(start.merit.is_finite() && self.small.is_finite()) {
             return Ok(Verdict::Stalled);
@@ -115,13 +112,25 @@ impl<'a> Run<'a, '_> {
                     continue;
                 }
             }
-            now = self.otherwise(limits.direct, &start, now)?;
+            now = self.otherwise(limits, &start, now)?;
             if !self.is_met(&now) {
-                let over = self.counts.products >= self.limit;
-                return Ok(if over { Verdict::StepLimit } else { Verdict::Stalled });
+                return self.best(judge);
             }
         }
         Ok(Verdict::Inaccurate)
+    }
+
+    /// The end without a point that meets the laws: the best point may be as accurate as rounding allows.
+    fn best(&mut self, judge: &mut dyn AcceptanceTest) -> Result<Verdict> {
+        if self.last.merit <= NEAR * self.scale {
+            let answer = self.finished(&self.last.clone())?;
+            if judge.accepts(&answer.x, &answer.alpha)? {
+                self.last = answer;
+                return Ok(Verdict::Solved);
+            }
+        }
+        let over = self.counts.products >= self.limit;
+        Ok(if over { Verdict::StepLimit } else { Verdict::Stalled })
     }
 
     /// The answer: exact zeros, forces exactly within the cones, gaps from a separate product.
@@ -158,6 +167,7 @@ impl<'a> Run<'a, '_> {
             verdict,
             counts,
             tried: self.tried,
+            slide: self.slide,
             pairs: self.pairs,
         }
     }

@@ -2,7 +2,7 @@
 //! elsewhere, with the coarse spaces G W and G Z.
 
 use crate::error::Result;
-use crate::qp::friction::cones::{direction, length, Cones};
+use crate::qp::friction::cones::{direction, length, Cones, Node};
 use crate::qp::friction::coordinates::{Coordinate, Law};
 use crate::qp::friction::motions::{Inverse, Motions};
 
@@ -43,21 +43,8 @@ impl Face {
                 () if size > limit => State::Slip,
                 () => State::Stick,
             };
-            let normal = if closed { EQUATION } else { Law::Held { value: 0.0 } };
-            face.coordinates.extend(node.own_normal().map(|row| Coordinate::row(row, normal)));
-            let coupling = Some((node.behind, node.mu)).filter(|_| closed && state == State::Slip);
-            let (along, first, second) = match state {
-                State::Open => ([1.0, 0.0], Law::Held { value: 0.0 }, Law::Held { value: 0.0 }),
-                State::Stick => ([1.0, 0.0], EQUATION, EQUATION),
-                State::Slip => {
-                    let damping = (size - limit) / (limit * rho);
-                    let across = Law::Free { damping, shift: 0.0 };
-                    (direction(trial.tangential), Law::Held { value: node.bound }, across)
-                }
-            };
-            face.push_tangents(node.tangents(), along, coupling, [first, second]);
-            face.states.push(state);
-            face.closed.push(closed);
+            let damping = if state == State::Slip { (size - limit) / (limit * rho) } else { 0.0 };
+            face.push_node(node, closed, state, (direction(trial.tangential), damping));
         }
         face.finish(cones);
         face
@@ -67,6 +54,21 @@ impl Face {
         let nodes = cones.nodes().len();
         let (states, closed) = (Vec::with_capacity(nodes), Vec::with_capacity(nodes));
         Self { coordinates: Vec::with_capacity(cones.order()), states, closed, rho }
+    }
+
+    /// Adds the coordinates of a node in this state: direction of its slip, and damping across it.
+    pub fn push_node(&mut self, node: &Node, closed: bool, state: State, (along, damping): ([f64; 2], f64)) {
+        let normal = if closed { EQUATION } else { Law::Held { value: 0.0 } };
+        self.coordinates.extend(node.own_normal().map(|row| Coordinate::row(row, normal)));
+        let coupling = Some((node.behind, node.mu)).filter(|_| closed && state == State::Slip);
+        let (along, laws) = match state {
+            State::Open => ([1.0, 0.0], [Law::Held { value: 0.0 }; 2]),
+            State::Stick => ([1.0, 0.0], [EQUATION; 2]),
+            State::Slip => (along, [Law::Held { value: node.bound }, Law::Free { damping, shift: 0.0 }]),
+        };
+        self.push_tangents(node.tangents(), along, coupling, laws);
+        self.states.push(state);
+        self.closed.push(closed);
     }
 
     /// Adds the coordinates along `along`, with this coupling, and across.

@@ -9,6 +9,7 @@
 //! r is the gap g in normal rows and minus the slip in tangential rows. F does not change, so every pair (v, F v) stays
 //! valid for all states, slip directions, coefficients, bounds and loads.
 
+mod combinations;
 mod cones;
 mod coordinates;
 mod direct;
@@ -20,6 +21,7 @@ mod newton;
 mod otherwise;
 mod pairs;
 mod path;
+mod slides;
 mod smooth;
 mod start;
 mod supports;
@@ -114,17 +116,27 @@ pub struct Tried {
     /// Paths along smoothed laws, with pairs and with dense matrices.
     pub paths: usize,
     pub dense_paths: usize,
-    /// Starts from the answer without friction, and from the answer with all closed nodes sticking.
-    pub frictionless: bool,
+    /// A start from the answer with all closed nodes sticking.
     pub sticking: bool,
+    /// Combinations of states.
+    pub combinations: usize,
 }
 
 impl Tried {
     /// Number of starts, including the first.
     pub fn starts(&self) -> usize {
         let others = self.restarts + self.paths + self.dense_paths;
-        1 + others + usize::from(self.frictionless) + usize::from(self.sticking)
+        1 + others + usize::from(self.sticking) + self.combinations
     }
+}
+
+/// A steady slide: the forces at their bounds hold only a part of the load.
+#[derive(Debug, Clone)]
+pub struct Slide {
+    /// Amplitudes of its motion.
+    pub alpha: Vec<f64>,
+    /// Part of the load along the motion that friction holds, no unit.
+    pub capacity: f64,
 }
 
 /// Here a verdict `Infeasible` means that PROJ_C found no forces within the cones that balance the load; it is no proof.
@@ -140,6 +152,8 @@ pub struct FrictionSolution {
     pub verdict: Verdict,
     pub counts: Counts,
     pub tried: Tried,
+    /// A slide that weak supports have shown, if no rest was found beside it.
+    pub slide: Option<Slide>,
     /// For later solves with the same F, G and rows.
     pub pairs: Pairs,
 }

@@ -8,7 +8,7 @@ use crate::qp::friction::cones::Cones;
 use crate::qp::friction::face::{Face, Model, State};
 use crate::qp::friction::motions::{Inverse, Motions};
 use crate::qp::friction::pairs::{Pair, Pairs, Step};
-use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Tried};
+use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Slide, Tried};
 use crate::qp::Counts;
 
 /// The first rho: rows have the compliance `b K_d^-1 b' + C = 1`.
@@ -62,6 +62,8 @@ pub struct Run<'a, 'w> {
     pub small: f64,
     /// The best point so far.
     pub last: Point,
+    /// A slide that weak supports have shown.
+    pub slide: Option<Slide>,
     pub observer: &'w mut dyn FrictionObserver,
 }
 

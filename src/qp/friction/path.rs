@@ -5,10 +5,16 @@ use crate::error::Result;
 use crate::linalg::vector::{axpy, norm_max};
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::Model;
-use crate::qp::friction::newton::{Laws, Point, Run};
+use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::pairs::Step;
 use crate::qp::friction::smooth::{face, missed, Smoothing};
 
+/// The path that ends when the states are known: most problems on which Newton's method cycles need no more.
+pub const SHORT: Way = Way { relaxed: 0.0, last: 1e-3, solves: Solves::Pairs { products: 40 } };
+/// The path that continues close to sliding.
+pub const LONG: Way = Way { relaxed: 1.0, last: LAST, solves: Solves::Pairs { products: 100 } };
+/// Smallest eps relative to the first eps: rounding.
+pub const LAST: f64 = 1e-14;
 /// The first eps, relative to the largest present or expected force.
 const FIRST: f64 = 0.3;
 /// Factors on eps after a full step, and after a shorter one.
@@ -24,6 +30,21 @@ const FALLS: f64 = 0.1;
 const SHORTEST: f64 = 1e-4;
 
 impl Run<'_, '_> {
+    /// Newton's method from the end point of a path that begins at the start.
+    pub fn along_path(&mut self, start: &Point, way: Way) -> Result<Point> {
+        match way.solves {
+            Solves::Pairs { .. } => self.tried.paths += 1,
+            Solves::Dense(_) => self.tried.dense_paths += 1,
+        }
+        let laws = Laws { cones: self.problem.cones, rho: RHO };
+        let begun = self.point(laws, start.x.clone(), start.g.clone(), start.alpha.clone())?;
+        let end = self.path(laws, begun, way)?;
+        if self.is_met(&end) {
+            return Ok(end);
+        }
+        self.newton(laws, end)
+    }
+
     /// Continues from `now` until the laws are satisfied or eps is at its end; with at most `products` further pairs, or
     /// with dense systems.
     pub fn path(&mut self, laws: Laws, mut now: Point, way: Way) -> Result<Point> {

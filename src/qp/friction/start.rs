@@ -6,7 +6,7 @@ use crate::qp::friction::coordinates::of_rows;
 use crate::qp::friction::face::Face;
 use crate::qp::friction::motions::Motions;
 use crate::qp::friction::nearest::{project, Projected};
-use crate::qp::friction::newton::{Laws, Point, Run};
+use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::{FrictionLimits, FrictionObserver, FrictionProblem, FrictionStart, Tried};
 use crate::qp::Counts;
 
@@ -33,6 +33,7 @@ impl<'a, 'w> Run<'a, 'w> {
             scale: 0.0,
             small: 0.0,
             last: Point::default(),
+            slide: None,
             problem,
             motions,
             all_rows,
@@ -41,6 +42,15 @@ impl<'a, 'w> Run<'a, 'w> {
         run.counts.coarse_factorisations += usize::from(run.all_rows.is_some());
         let first = project(&problem, problem.cones, run.motions.as_ref(), &y)?;
         Ok((run, first))
+    }
+
+    /// The start point, the scale and the merit that counts as zero.
+    pub fn begun(&mut self, tolerance: f64, first: &Projected, alpha: &[f64]) -> Result<Point> {
+        let g = self.gradient(&first.point)?;
+        self.measure(&g, tolerance)?;
+        let laws = Laws { cones: self.problem.cones, rho: RHO };
+        self.allow_for_balance(laws, &first.point)?;
+        self.begin(laws, &first.point, &g, alpha)
     }
 
     /// `F x - d`

@@ -14,7 +14,7 @@ use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::fallback::{Found, MethodOptions};
 use crate::solve::friction::laws::{cones, problem, OfBodies};
-use crate::solve::friction::slides::{shown, Shown};
+use crate::solve::friction::slides::named;
 use crate::solve::gaps::Gaps;
 
 pub use known::on_known_states;
@@ -63,25 +63,11 @@ pub fn solve_with_friction(
         pairs: kept.filter(|_| is_warm).unwrap_or_default(),
     };
     let mut found = friction(problem, limits, start, judged, steps)?;
-    let mut counts = found.counts;
-    if found.verdict == Verdict::Stalled {
-        steps.line(format!("weak supports after {} products: no rest was found", counts.products))?;
-        match shown(problem, limits, steps, &mut counts) {
-            Ok(Shown::Slides(slide)) => return Err(slide.named(case, counts.starts)?),
-            Ok(Shown::Rest { x, alpha }) => {
-                let pairs = std::mem::take(&mut found.pairs);
-                let start = FrictionStart { x: Some(&x), alpha: Some(&alpha), pairs };
-                let next = friction(problem, limits, start, judged, steps)?;
-                counts = counts + next.counts;
-                if next.verdict != Verdict::Stalled {
-                    found = next;
-                }
-            }
-            Ok(Shown::Nothing) => {}
-            Err(error) => found.verdict = Verdict::of_refusal(error)?,
-        }
+    let counts = found.counts;
+    if let (Verdict::Stalled, Some(slide)) = (&found.verdict, &found.slide) {
+        return Err(named(case, slide, found.counts.starts)?);
     }
-    ready.pairs.keep(rows, std::mem::take(&mut found.pairs));
+    ready.pairs.keep(rows, std::mem::take(&mut found.pairs), ready.dual.product_work());
     ready.pairs.keep_answer(DualAnswer {
         rows: rows.to_vec(),
         x: found.x.clone(),
