@@ -4,6 +4,7 @@
 //! | module | models |
 //! |---|---|
 //! | [`free`], [`cut`] | an upper block free to slide and spin, moduli varied, null spaces mixed and noisy, cut into pieces |
+//! | [`beams`] | long beams on springs that only push and on rigid beds |
 //! | [`far`] | a row whose gap is never closed |
 //! | [`presolve`] | rows that contradict each other beside one that is far away |
 //! | [`long`] | rows over all unknowns of a large body |
@@ -15,6 +16,7 @@
 //! | [`mixed`] | contrast 100, gaps from 1e-6 to 1 of the displacement; [`dense`] is its second solver |
 //! | [`plane`] | the plane models that they share |
 
+mod beams;
 mod cut;
 mod dense;
 mod far;
