@@ -82,12 +82,17 @@ impl Finish<'_, '_> {
         let mut active = qp.at_bound(&self.ending.solution.x);
         let mut point = SplitPoint::of(self.recovery, self.ending, if self.delicate { 1.0 } else { FAR })?;
         let mut visited: Vec<Vec<bool>> = Vec::new();
-        let mut sparse = None;
+        // a factor of the whole island costs as much as its setup: only an answer that does not pass is worth it
+        let (mut sparse, passes) = (None, self.ending.judgement.certificate.passed());
         while visited.len() < FACES && !visited.contains(&active) {
             let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
+            let is_large = rows.len() + point.alpha.len() > direct.limit;
+            if is_large && passes {
+                break;
+            }
             point.hold(&active);
             self.ending.solution.counts.direct += 1;
-            if rows.len() + point.alpha.len() > direct.limit {
+            if is_large {
                 if sparse.is_none() {
                     sparse = SparseFaces::of(self.recovery)?;
                 }
