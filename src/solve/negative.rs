@@ -270,6 +270,12 @@ impl<'a> Search<'a, '_> {
         if dot(&round.change, &self.negative.forced(&motion.alpha)) < 0.0 {
             motion.turn();
         }
+        if self.recovery.friction && !motion.slips_on(self.recovery, &round.x, &round.held) {
+            motion.turn();
+            if !motion.slips_on(self.recovery, &round.x, &round.held) {
+                return Ok(None);
+            }
+        }
         Ok(motion.falls(self.recovery, &round.held)?.then_some((motion, rate)))
     }
 

@@ -41,6 +41,13 @@ impl Sliding {
         }
     }
 
+    /// Friction does not resist v: on rows with a force x that follows from normal forces (`held`), v goes along this force.
+    pub fn slips_on(&self, recovery: &Recovery, x: &[f64], held: &[bool]) -> bool {
+        let rows = &recovery.ready.rows.matrix;
+        let slips = (0..rows.rows()).filter(|&i| held[i] && x[i] != 0.0);
+        slips.into_iter().all(|i| x[i].signum() * rows.row_dot(i, &self.v) >= -STILL * self.size(rows, i))
+    }
+
     /// `v'K v < 0` by the matrices of the host, and no forces within the cones of the rows resist v.
     pub fn falls_beside_friction(&self, recovery: &Recovery) -> Result<bool> {
         let (energy, terms) = self.energy(recovery)?;

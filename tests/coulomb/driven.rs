@@ -210,5 +210,5 @@ fn pressed_blocks_with_negative_stiffness_rest_or_are_proved_not_to() {
     }
     assert!(lines.is_empty(), "{counts:?}\n{}", lines.join("\n"));
     let of = |end: &str| counts.get(end).copied().unwrap_or(0) as u64;
-    assert!(of("OK") > all / 2 && 200 * (of("OK") + of("Indefinite")) >= 199 * all, "{counts:?}");
+    assert!(of("OK") > all / 2 && 200 * of("Stalled") <= all, "{counts:?}");
 }
