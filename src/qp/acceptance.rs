@@ -109,6 +109,11 @@ impl Verdict {
         }
     }
 
+    /// The host, the time limit or the limit of steps has ended the run.
+    pub fn is_stop(&self) -> bool {
+        matches!(self, Self::StepLimit | Self::TimeLimit | Self::Cancelled)
+    }
+
     /// The result with this verdict; if the host or the time limit has stopped its computation, `otherwise` with the
     /// verdict for that.
     pub fn with<T>(self, found: Result<T>, otherwise: T) -> Result<(T, Self)> {

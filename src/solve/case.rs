@@ -3,7 +3,9 @@
 use crate::certificate::{BodyData, Data};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::norm_max;
 use crate::model::Model;
+use crate::platform::memory::zeros;
 use crate::setup::{Island, Prepared, Ready};
 
 /// All inputs for the solution of one island: the data of the host and the results of setup.
@@ -26,6 +28,17 @@ impl<'a> Case<'a> {
     /// Some node has friction.
     pub fn has_friction(&self) -> bool {
         self.island().has_friction()
+    }
+
+    /// A motion of the island over all unknowns of the model, its largest entry 1 in size, and the body and dof of this entry.
+    pub fn fastest(&self, own: &[f64]) -> Result<(Vec<f64>, usize, usize)> {
+        let mut v = zeros(self.model.sizes().dofs, "a motion")?;
+        self.island().scatter(self.model, own, &mut v);
+        let largest = norm_max(&v);
+        v.iter_mut().for_each(|v| *v /= largest);
+        let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+        let body = self.model.offsets[1..].partition_point(|end| *end <= fastest);
+        Ok((v, body, fastest - self.model.offsets[body]))
     }
 
     /// The data of the island for the certificate.

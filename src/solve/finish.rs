@@ -96,19 +96,16 @@ impl Finish<'_, '_> {
                 if sparse.is_none() {
                     sparse = SparseFaces::of(self.recovery)?;
                 }
-                let Some(face) = sparse.as_ref().map(|faces| faces.on(rows)).transpose()?.flatten() else {
-                    break;
-                };
-                self.correct(&mut point, &FaceSolver::Sparse(face))?;
+                let face = sparse.as_ref().map(|faces| faces.on(rows)).transpose()?.flatten();
+                let Some(face) = face else { break };
+                self.correct(&mut point, FaceSolver::Sparse(&face))?;
             } else {
                 let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
-                let is_truncated = face.is_truncated();
-                let feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
-                let mut solver = FaceSolver::Dense(Box::new(feedback));
-                self.correct(&mut point, &solver)?;
-                if is_truncated {
-                    solver = solver.in_full(point.alpha.len(), &self.negative)?;
-                    self.correct(&mut point, &solver)?;
+                let mut feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
+                self.correct(&mut point, FaceSolver::Dense(&feedback))?;
+                if feedback.face.is_truncated() {
+                    feedback = Feedback::on(feedback.face.in_full()?, point.alpha.len(), &self.negative)?;
+                    self.correct(&mut point, FaceSolver::Dense(&feedback))?;
                 }
             }
             if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
@@ -121,12 +118,12 @@ impl Finish<'_, '_> {
 
     /// Corrections on one face while each is less than half the previous one; every intermediate answer that is no worse
     /// replaces the current one.
-    fn correct(&mut self, point: &mut SplitPoint, face: &FaceSolver) -> Result<()> {
-        let mut last = f64::INFINITY;
+    fn correct(&mut self, point: &mut SplitPoint, face: FaceSolver) -> Result<()> {
+        let (mut last, undetermined) = (f64::INFINITY, face.undetermined());
         for _ in 0..CORRECTIONS {
             interrupt::check()?;
             let size = point.correct(self.recovery, &self.negative, face)?;
-            self.keep(point, face.undetermined())?;
+            self.keep(point, undetermined)?;
             if size >= 0.5 * last {
                 break;
             }
@@ -152,23 +149,13 @@ impl Finish<'_, '_> {
 }
 
 /// The factors of a face: dense ones of F and the modes, or sparse ones of the island.
+#[derive(Clone, Copy)]
 enum FaceSolver<'a> {
-    Dense(Box<Feedback<'a>>),
-    Sparse(SparseFace<'a>),
+    Dense(&'a Feedback<'a>),
+    Sparse(&'a SparseFace<'a>),
 }
 
 impl FaceSolver<'_> {
-    /// With all rows except those that depend on others up to rounding.
-    fn in_full(self, modes: usize, negative: &NegativeMotions) -> Result<Self> {
-        match self {
-            Self::Dense(feedback) => {
-                let face = feedback.face.in_full()?;
-                Ok(Self::Dense(Box::new(Feedback::on(face, modes, negative)?)))
-            }
-            sparse => Ok(sparse),
-        }
-    }
-
     fn undetermined(&self) -> usize {
         match self {
             Self::Dense(feedback) => feedback.face.undetermined(),
@@ -270,7 +257,7 @@ impl SplitPoint {
 
     /// Solves (10)-(11) on the face for the residual loads and gaps, `f - K u - B'x` and `c + C x - B u`: every
     /// correction reduces the errors of F and K+. Returns the length of the correction, `|.|_D`.
-    fn correct(&mut self, recovery: &Recovery, negative: &NegativeMotions, face: &FaceSolver) -> Result<f64> {
+    fn correct(&mut self, recovery: &Recovery, negative: &NegativeMotions, face: FaceSolver) -> Result<f64> {
         let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
         let mut load = recovery.load_left(&self.v.parts(), &self.x.parts())?;
         let left = self.gaps_left(recovery);
@@ -354,10 +341,10 @@ mod tests {
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
                 let negative = NegativeMotions::of(recovery.ready);
-                let face = FaceSolver::Dense(Box::new(Feedback::on(face, 0, &negative).unwrap()));
+                let face = Feedback::on(face, 0, &negative).unwrap();
                 let mut finish =
                     Finish { recovery, ending: &mut ending, delicate: true, replaced: false, negative };
-                finish.correct(&mut point, &face).unwrap();
+                finish.correct(&mut point, FaceSolver::Dense(&face)).unwrap();
                 assert_eq!(finish.replaced, right, "{rows:?}");
                 assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");
                 assert_eq!(point.active(recovery), [false, true], "{rows:?}");

@@ -178,8 +178,7 @@ fn attempt(
     recovery.bring_to_rest(&mut ending, false)?;
     let slides = interrupt::never(|| recovery.slides(&ending))?;
     let mut accuracy = case.island().accuracy;
-    let goes_on =
-        !matches!(ending.solution.verdict, Verdict::TimeLimit | Verdict::Cancelled | Verdict::StepLimit);
+    let goes_on = !ending.solution.verdict.is_stop();
     if dual.cleaned.is_some() || !slides.all.is_empty() {
         accuracy.data = case.model.accuracy_of_coordinates();
     }

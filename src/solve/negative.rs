@@ -15,7 +15,7 @@
 //! rho.
 
 use crate::error::{Error, Kind, Proof, Result};
-use crate::linalg::vector::{axpy, dot, norm, norm_max, NOISE};
+use crate::linalg::vector::{axpy, dot, norm, NOISE};
 use crate::linalg::Matrix;
 use crate::qp::{Qp, Solution, Verdict};
 use crate::solve::case::Case;
@@ -63,9 +63,9 @@ struct Round<'a> {
     is_rough: bool,
     /// None if the face is too large for dense factors.
     feedback: Option<Feedback<'a>>,
-    /// With friction, `(I - P)^-1` as far as this and earlier rounds on this face show it: P of `feedback` does not know that
+    /// With friction alone: `(I - P)^-1` as far as this and earlier rounds on this face show it: P of `feedback` does not know that
     /// forces at their bounds follow normal forces and slips.
-    inverse: Matrix,
+    inverse: Option<Matrix>,
 }
 
 /// What the rounds so far have found.
@@ -107,7 +107,7 @@ impl Known<'_> {
     /// An accepted answer must also have settled amplitudes.
     pub fn is_strict(&self) -> bool {
         match &self.last {
-            Some(Round { feedback: Some(_), inverse, .. }) if inverse.cols == 0 => self.same < STRICT,
+            Some(Round { feedback: Some(_), inverse: None, .. }) => self.same < STRICT,
             Some(_) => self.rounds < STRICT_ALONE,
             None => true,
         }
@@ -134,10 +134,12 @@ impl<'a> Search<'a, '_> {
         known.rounds += 1;
         let is_same = known.last.as_ref().is_some_and(|last| last.held == round.held);
         known.same = if is_same { known.same + 1 } else { 0 };
-        round.inverse = self.inverse(&round, known.last.as_ref().filter(|_| is_same))?;
+        if self.recovery.friction {
+            round.inverse = Some(self.inverse(&round, known.last.as_ref().filter(|_| is_same))?);
+        }
         let falling = self.falling(&round, known.last.as_ref().filter(|_| is_same))?;
         match &falling {
-            Some((motion, rate)) if !unsettled => return Err(indefinite(self.case, &motion.v, *rate)),
+            Some((motion, rate)) if !unsettled => return Err(indefinite(self.case, &motion.v, *rate)?),
             _ if !unsettled => return Ok(Next::End(Verdict::Solved)),
             None if known.same > MENDED && round.feedback.is_some() && !self.recovery.friction => {
                 return Ok(Next::End(Verdict::Stalled))
@@ -169,7 +171,7 @@ impl<'a> Search<'a, '_> {
         if let Verdict::Infeasible { .. } = solution.verdict {
             let e = self.negative.resultants(self.qp.e, &step.b);
             if let Some(motion) = self.unstopped(Qp { e: &e, ..self.qp }, &solution.x)? {
-                return Err(indefinite(self.case, &motion.v, f64::INFINITY));
+                return Err(indefinite(self.case, &motion.v, f64::INFINITY)?);
             }
         }
         match &known.last {
@@ -198,11 +200,10 @@ impl<'a> Search<'a, '_> {
     /// `(I - P)^-1` of a round with friction; `last` had the same face: then the difference of both rounds corrects it
     /// (Broyden).
     fn inverse(&self, round: &Round, last: Option<&Round>) -> Result<Matrix> {
-        let d = if self.recovery.friction { self.negative.modes.len() } else { 0 };
+        let d = self.negative.modes.len();
         let mut inverse = Matrix::from_fn(d, d, |i, j| f64::from(i == j))?;
-        if let Some(last) = last.filter(|_| d > 0) {
-            inverse.data.copy_from_slice(&last.inverse.data);
-            let minus = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x - y).collect::<Vec<_>>();
+        if let Some((last, known)) = last.and_then(|last| Some((last, last.inverse.as_ref()?))) {
+            inverse.data.copy_from_slice(&known.data);
             let (mut moved, fell) = (minus(&round.b, &last.b), minus(&last.change, &round.change));
             let along = inverse.mul_transposed(&moved);
             let slope = dot(&along, &fell);
@@ -222,7 +223,7 @@ impl<'a> Search<'a, '_> {
     fn round(&self, step: &Step, (solution, held): (&Solution, Vec<bool>)) -> Result<Round<'a>> {
         let Solution { x, alpha, .. } = solution;
         let next: Vec<f64> = self.negative.forced(alpha);
-        let change: Vec<f64> = next.iter().zip(&step.b).map(|(next, b)| next - b).collect();
+        let change = minus(&next, &step.b);
         let parts = match self.recovery.friction {
             true => vec![norm(&change)],
             false => {
@@ -234,7 +235,7 @@ impl<'a> Search<'a, '_> {
         let terms = parts.iter().map(|part| part.abs()).sum::<f64>();
         let feedback = Feedback::of(self.means.direct, self.qp, &held, self.negative)?;
         Ok(Round {
-            inverse: Matrix::zeros(0, 0)?,
+            inverse: None,
             b: step.b.clone(),
             x: x.clone(),
             alpha: alpha.clone(),
@@ -258,7 +259,6 @@ impl<'a> Search<'a, '_> {
                     (1.0 - feedback.rate() < NOISE).then(|| feedback.motion(round.x.len()))
                 }
                 (None, Some(last)) => {
-                    let minus = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x - y).collect();
                     let rate = (dot(&round.change, &round.change) / dot(&last.change, &last.change)).sqrt();
                     (rate >= 1.0).then(|| (minus(&round.x, &last.x), minus(&round.alpha, &last.alpha), rate))
                 }
@@ -283,7 +283,7 @@ impl<'a> Search<'a, '_> {
     fn along(&self, round: &Round, motion: &Sliding, rate: f64) -> Result<Step> {
         let reach = motion.reach(self.recovery, &self.displacements(round)?, &round.held);
         if reach.is_infinite() {
-            return Err(indefinite(self.case, &motion.v, rate));
+            return Err(indefinite(self.case, &motion.v, rate)?);
         }
         Ok(self.moved(round, motion, reach))
     }
@@ -293,9 +293,9 @@ impl<'a> Search<'a, '_> {
         let Some(feedback) = round.feedback.as_ref().filter(|feedback| feedback.rate() < 1.0) else {
             return Ok(Step { b: round.next.clone(), x: round.x.clone(), is_trial: false });
         };
-        if self.recovery.friction {
+        if let Some(inverse) = &round.inverse {
             let mut b = round.b.clone();
-            round.inverse.mul_add(1.0, &round.change, &mut b);
+            inverse.mul_add(1.0, &round.change, &mut b);
             return Ok(Step { b, x: round.x.clone(), is_trial: true });
         }
         let b = feedback.settled(&round.next, &round.change);
@@ -310,8 +310,7 @@ impl<'a> Search<'a, '_> {
         let plain = Step { b: round.next.clone(), x: round.x.clone(), is_trial: false };
         if self.recovery.friction {
             let b: Vec<f64> = round.next.iter().zip(failed).map(|(next, b)| 0.5 * (next + b)).collect();
-            let beyond: Vec<f64> = round.next.iter().zip(&b).map(|(next, b)| b - next).collect();
-            let is_trial = norm(&beyond) > SHORT * norm(&round.change);
+            let is_trial = norm(&minus(&b, &round.next)) > SHORT * norm(&round.change);
             return Ok(if is_trial { Step { b, is_trial, ..plain } } else { plain });
         }
         let Some(feedback) = &round.feedback else { return Ok(plain) };
@@ -336,18 +335,17 @@ impl<'a> Search<'a, '_> {
 }
 
 /// The error for a motion along which the energy falls while closed rows stay closed, with the body that moves most.
-fn indefinite(case: Case, own: &[f64], rate: f64) -> Error {
-    let (ready, model) = (case.ready, case.model);
-    let mut v = vec![0.0; model.sizes().dofs];
-    ready.island.scatter(model, own, &mut v);
-    let largest = norm_max(&v);
-    v.iter_mut().for_each(|v| *v /= largest);
-    let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
-    let body = model.offsets[1..].partition_point(|end| *end <= fastest);
+fn indefinite(case: Case, own: &[f64], rate: f64) -> Result<Error> {
+    let (v, body, dof) = case.fastest(own)?;
     let what = format!(
         "the answer is no minimum: K has negative stiffness along this motion, fastest at this dof, {rate:.1e} times the \
          resistance of closed rows"
     );
-    let error = Error::new(Kind::Indefinite, what).body(body).dof(fastest - model.offsets[body]);
-    error.value(rate).limit(1.0).proved_by(Proof::Motion { margin: 1.0 - 1.0 / rate, v })
+    let error = Error::new(Kind::Indefinite, what).body(body).dof(dof);
+    Ok(error.value(rate).limit(1.0).proved_by(Proof::Motion { margin: 1.0 - 1.0 / rate, v }))
+}
+
+/// `x - y`
+fn minus(x: &[f64], y: &[f64]) -> Vec<f64> {
+    x.iter().zip(y).map(|(x, y)| x - y).collect()
 }

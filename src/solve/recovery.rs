@@ -188,14 +188,19 @@ impl<'a> Recovery<'a> {
         self.data.bodies.iter().zip(cleaners.iter_mut()).map(clean).collect()
     }
 
-    /// Amplitudes over the modes of the dual of the rigid part of u: R'D u of every body.
+    /// R'D u of a body.
+    pub fn rigid_part(&self, body: &BodyData, u: &[f64]) -> Vec<f64> {
+        let (metric, by) = (&self.ready.rows.metric[body.range()], self.ready.island.unit / body.unit);
+        let weighted: Vec<f64> = u.iter().zip(metric).map(|(u, d)| by * d * u).collect();
+        body.null_space.mul_transposed(&weighted)
+    }
+
+    /// Amplitudes over the modes of the dual of the rigid part of u.
     pub fn amplitudes(&self, u: &[f64]) -> Vec<f64> {
         let dual = &self.ready.dual;
         let mut all = vec![0.0; dual.modes()];
         for (k, body) in self.data.bodies.iter().enumerate() {
-            let by = self.ready.island.unit / body.unit;
-            let weighted: Vec<f64> = body.range().map(|j| by * self.ready.rows.metric[j] * u[j]).collect();
-            let own = body.null_space.mul_transposed(&weighted);
+            let own = self.rigid_part(body, &u[body.range()]);
             all[dual.modes_of(k)].iter_mut().zip(own).for_each(|(a, own)| *a = own * dual.size_of(k));
         }
         all

@@ -48,7 +48,7 @@ pub fn solve_in_rounds<'a>(
         let Found { mut solution, held } = or_last(found, last.take())?;
         counts = counts + solution.counts;
         solution.counts = counts;
-        if let Verdict::StepLimit | Verdict::TimeLimit | Verdict::Cancelled = solution.verdict {
+        if solution.verdict.is_stop() {
             return Ok(solution);
         }
         let solution = match near.after(solution, &judge.judged)? {

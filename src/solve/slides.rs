@@ -195,11 +195,9 @@ impl Recovery<'_> {
     /// motion is far larger. Soft bodies are held by K: they do not slide.
     fn split(&self, p: usize, body: &BodyData, slides: &mut Slides, u: &mut [f64]) -> Result<bool> {
         let metric = &self.ready.rows.metric[body.range()];
-        let by = self.ready.island.unit / body.unit;
         let mut amplitudes = vec![0.0; body.null_space.cols];
         for _ in 0..2 {
-            let weighted: Vec<f64> = u.iter().zip(metric).map(|(u, d)| by * d * u).collect();
-            let part = body.null_space.mul_transposed(&weighted);
+            let part = self.rigid_part(body, u);
             body.null_space.mul_add(-1.0, &part, u);
             amplitudes.iter_mut().zip(part).for_each(|(a, part)| *a += part);
         }

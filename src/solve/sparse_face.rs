@@ -85,15 +85,12 @@ impl<'a> SparseFaces<'a> {
         let mut weight = zeros(self.rows.rows(), WHAT)?;
         rows.iter().for_each(|&i| weight[i] = self.compliance[i].max(self.least[i]).recip());
         let pressed = self.gram.weighted(self.rows, |i| weight[i])?;
-        let mut matrix = Symmetric::with_room(self.k.order(), self.k.col.len(), WHAT)?;
-        for i in 0..self.k.order() {
-            matrix.push_row(merged(self.k.lower_row(i), pressed.lower_row(i)));
-        }
-        let root = |i: usize| if matrix.diagonal(i) > 0.0 { matrix.diagonal(i).sqrt().recip() } else { 1.0 };
-        let scale: Vec<f64> = (0..matrix.order()).map(root).collect();
-        let mut scaled = Symmetric::with_room(matrix.order(), matrix.col.len(), WHAT)?;
-        for i in 0..matrix.order() {
-            scaled.push_row(matrix.lower_row(i).map(|(j, v)| (j, scale[i] * v * scale[j])));
+        let diagonal = (0..self.k.order()).map(|i| self.k.diagonal(i) + pressed.diagonal(i));
+        let scale: Vec<f64> = diagonal.map(|d| if d > 0.0 { d.sqrt().recip() } else { 1.0 }).collect();
+        let mut scaled = Symmetric::with_room(scale.len(), self.k.col.len(), WHAT)?;
+        for i in 0..scale.len() {
+            let row = merged(self.k.lower_row(i), pressed.lower_row(i));
+            scaled.push_row(row.map(|(j, v)| (j, scale[i] * v * scale[j])));
         }
         let factor = self.analysis.pivoted(&scaled, 1.0, NOISE)?;
         Ok(factor.ok().map(|factor| SparseFace { faces: self, rows, weight, factor, scale }))

@@ -6,32 +6,17 @@ use decks::dense::solve;
 use decks::random::Random;
 use decks::{Block, Body, Csr, Deck, Friction};
 use feti_contact::error::{Error, Kind, Proof};
-use feti_contact::solver::{FrictionState, Modes, Outcome, Problem, RowKind};
+use feti_contact::solver::{FrictionState, Modes, Outcome, Problem};
 
-use crate::hand_over;
-use crate::judge::{self, Answer};
+use crate::battery::answer;
+use crate::{hand_over, judge};
 
 /// An answer is right if its worst error is below this part of what is there.
 const RIGHT: f64 = 1e-8;
 
 /// The deck with its rigid motions declared soft.
 fn soft(deck: &Deck) -> Problem {
-    let mut problem = hand_over::without_null_spaces(deck).unwrap();
-    for (p, body) in deck.bodies.iter().enumerate() {
-        let (n, motions) = (body.dofs(), body.modes());
-        problem.set_null_space(p, n, motions.len(), &motions.concat(), n, Modes::Soft).unwrap();
-    }
-    problem
-}
-
-fn answer(problem: &Problem) -> Answer {
-    let of = |kind| problem.multipliers(kind).unwrap().to_vec();
-    Answer {
-        u: problem.displacements().unwrap().to_vec(),
-        lambda: of(RowKind::Inequality),
-        along: of(RowKind::Tangential),
-        mu: of(RowKind::Equality),
-    }
+    hand_over::with_motions(deck, Modes::Soft).unwrap()
 }
 
 /// `K - by r r'`, r = `motion` / |motion|

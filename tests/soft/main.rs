@@ -100,12 +100,7 @@ pub fn rounded(mut deck: Deck, digits: usize) -> Deck {
 
 /// The deck with its rigid motions given as these.
 pub fn given(deck: &Deck, modes: Modes) -> Problem {
-    let mut problem = hand_over::without_null_spaces(deck).unwrap();
-    for (p, body) in deck.bodies.iter().enumerate() {
-        let (n, motions) = (body.dofs(), body.modes());
-        problem.set_null_space(p, n, motions.len(), &motions.concat(), n, modes).unwrap();
-    }
-    problem
+    hand_over::with_motions(deck, modes).unwrap()
 }
 
 /// Forces, displacements and products of a solve that passes.

@@ -6,10 +6,15 @@ use feti_contact::solver::{FrictionInput, Modes, Problem, RowKind, RowsInput, Sp
 
 /// Registers stiffness, exact null space and load of every body, then both kinds of rows.
 pub fn problem(deck: &Deck) -> Result<Problem> {
+    with_motions(deck, Modes::Exact)
+}
+
+/// The same with the rigid motions given as these.
+pub fn with_motions(deck: &Deck, given: Modes) -> Result<Problem> {
     let mut problem = without_null_spaces(deck)?;
     for (p, body) in deck.bodies.iter().enumerate() {
         let (n, modes) = (body.dofs(), body.modes());
-        problem.set_null_space(p, n, modes.len(), &modes.concat(), n, Modes::Exact)?;
+        problem.set_null_space(p, n, modes.len(), &modes.concat(), n, given)?;
     }
     Ok(problem)
 }

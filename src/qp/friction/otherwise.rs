@@ -1,5 +1,5 @@
-//! Alternatives if Newton's method does not end well, by cost: another rho close to an answer, the smoothed laws, weak supports, sticking nodes, dense systems. They are those of
-//! which each solves problems that the others do not.
+//! Alternatives if Newton's method does not end well, by cost: another rho close to an answer, the smoothed laws, weak supports,
+//! sticking nodes, dense systems. Each solves problems that the others do not.
 
 use crate::error::{Kind, Result};
 use crate::linalg::vector::axpy;
@@ -18,7 +18,7 @@ const OTHER: f64 = 5.0;
 
 impl Run<'_, '_> {
     /// Called if Newton's method has not ended well: tries one alternative after the other until one succeeds. A slide that weak supports
-    /// show spares what costs many products; rests besides it are sought by the others.
+    /// show spares what costs many products; rests beside it are sought by the others.
     pub fn otherwise(&mut self, limits: FrictionLimits, start: &Point, stalled: Point) -> Result<Point> {
         let mut now = stalled.clone();
         if now.merit <= FAR * self.scale {

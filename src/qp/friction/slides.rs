@@ -109,8 +109,8 @@ impl Point {
     }
 }
 
-/// A slide along these amplitudes, with forces that are accurate to `nothing`, if nodes that carry forces do not open, their tangential forces are at their bounds along the slip, and
-/// the load drives it.
+/// A slide along these amplitudes, with forces that are accurate to `nothing`, if nodes that carry forces do not open, tangential forces
+/// are at their bounds along the slip, and the load drives it.
 fn steady(problem: &FrictionProblem, (x, nothing): (&[f64], f64), alpha: Vec<f64>) -> Option<Slide> {
     let rate = |row: usize| problem.g_transposed.row_dot(row, &alpha);
     let rates: Vec<f64> = (0..x.len()).map(rate).collect();

@@ -74,34 +74,15 @@ pub fn solve_with_friction(
         alpha: found.alpha.clone(),
     });
     let x = near.spread(&found.x);
-    let held = held(ready, qp, gaps, (&x, rows), &cones, &found.states);
+    // rows without force, and tangential rows of nodes that no friction holds
+    let mut held = qp.at_bound(&x);
+    laws::open_rows(ready, gaps, &x).into_iter().for_each(|row| held[row] = true);
     let undetermined = match found.verdict {
-        Verdict::Solved => AnswerFace::of(qp, &open(ready, qp, gaps, &x))?.undetermined()?.cols,
+        Verdict::Solved => AnswerFace::of(qp, &held)?.undetermined()?.cols,
         _ => 0,
     };
+    let slips = cones.nodes().iter().zip(&found.states).filter(|(_, state)| **state == State::Slip);
+    slips.flat_map(|(node, _)| node.tangents()).for_each(|&row| held[rows[row]] = true);
     let FrictionSolution { alpha, scale, verdict, .. } = found;
     Ok(Found { solution: Solution { x, alpha, undetermined, scale, verdict, counts }, held })
-}
-
-/// Rows without force at x, and tangential rows of nodes that no friction holds.
-fn open(ready: &Ready, qp: &Qp, gaps: &Gaps, x: &[f64]) -> Vec<bool> {
-    let mut held = qp.at_bound(x);
-    laws::open_rows(ready, gaps, x).into_iter().for_each(|row| held[row] = true);
-    held
-}
-
-/// The same, and tangential rows of nodes that slip.
-fn held(
-    ready: &Ready,
-    qp: &Qp,
-    gaps: &Gaps,
-    (x, rows): (&[f64], &[usize]),
-    cones: &Cones,
-    states: &[State],
-) -> Vec<bool> {
-    let mut held = open(ready, qp, gaps, x);
-    for (node, _) in cones.nodes().iter().zip(states).filter(|(_, state)| **state == State::Slip) {
-        node.tangents().iter().for_each(|&row| held[rows[row]] = true);
-    }
-    held
 }
