@@ -31,8 +31,6 @@ struct Tally {
     lines: usize,
     short: usize,
     failed: usize,
-    /// Decks on which SMALBE-M is not as far behind as expected.
-    near: usize,
     /// Of the decks with a coarse problem.
     products: usize,
     coarse_solves: usize,
@@ -79,10 +77,8 @@ fn main() -> ExitCode {
         let of_all = wanted.iter().all(|part| part == SEQUENCE);
         tally.sequences(all.filter(|case| of_all || wants(&case.name)));
     }
-    let Tally { lines, short, failed, near, .. } = tally;
-    println!(
-        "counts: {lines} lines, {short} short, {failed} failed; SMALBE nearer than its goal on {near} decks"
-    );
+    let Tally { lines, short, failed, .. } = tally;
+    println!("counts: {lines} lines, {short} short, {failed} failed");
     if tally.failed > 0 {
         ExitCode::FAILURE
     } else {
@@ -109,7 +105,6 @@ impl Tally {
     fn judge(&mut self, case: &Case, measurement: &Measurement) {
         let reasons = verdict::reasons(case, measurement);
         self.short += usize::from(!reasons.is_empty());
-        self.near += usize::from(verdict::smalbe_is_near(case, measurement));
         if measurement.coarse_solves > 0 {
             self.products += measurement.products;
             self.coarse_solves += measurement.coarse_solves;

@@ -21,8 +21,6 @@ pub struct Measurement {
     pub products: usize,
     /// Products with F of the linear solve.
     pub linear: usize,
-    /// Products with F of SMALBE-M with MPRGP, those of its power iteration included; none where it gave up.
-    pub smalbe: Option<usize>,
     /// Products with the preconditioner M.
     pub preconditioned: usize,
     pub coarse_solves: usize,
@@ -40,7 +38,6 @@ impl Measurement {
         Self {
             products: report.counts.products,
             linear,
-            smalbe: None,
             preconditioned: report.counts.preconditioned,
             coarse_solves: report.counts.coarse_solves,
             coarse_factorisations: report.counts.coarse_factorisations,
@@ -69,17 +66,8 @@ pub fn measure(case: &Case, tolerance: f64) -> Result<Measurement, String> {
     let report = solved(&mut problem, "contact")?;
     let multipliers = problem.multipliers(RowKind::Inequality).map_err(|e| e.to_string())?.to_vec();
     let residual = tolerance * report.gap_scale;
-    let smalbe = smalbe(&mut problem);
     let linear = linear::products(&mut problem, &deck.contact, &multipliers, residual)?;
-    Ok(Measurement { smalbe, ..Measurement::new(&report, linear, started) })
-}
-
-/// The same problem by the method of the nearest peers, with the same preconditioner.
-fn smalbe(problem: &mut Problem) -> Option<usize> {
-    problem.set_str("method", "smalbe").ok()?;
-    let report = problem.solve().ok();
-    problem.set_str("method", "proportioning").ok()?;
-    report.filter(|report| report.outcome == Outcome::Solved).map(|report| report.counts.products)
+    Ok(Measurement::new(&report, linear, started))
 }
 
 /// The deck with the options of every run.

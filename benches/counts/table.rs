@@ -15,14 +15,6 @@ impl Model {
             Model::Stack(stack) => stack.build(),
         }
     }
-
-    /// How many times the products SMALBE-M is expected to need: where equalities remain, glue or floating bodies.
-    fn smalbe(&self) -> Option<f64> {
-        match self {
-            Model::Cube(cube) => Some(if cube.elements < 12 { 3.0 } else { 2.5 }),
-            Model::Stack(stack) => (!stack.hold).then_some(3.0),
-        }
-    }
 }
 
 /// Figures known for a deck: applications of F, start gradients included.
@@ -40,8 +32,6 @@ pub struct Case {
     pub published: Option<Published>,
     /// Every row closes on purpose.
     pub all_closed: bool,
-    /// Products of SMALBE-M with MPRGP: so many times those of proportioning at least. None where nothing floats.
-    pub smalbe: Option<f64>,
 }
 
 /// F from the smaller deck to the larger one may grow by `goal`.
@@ -85,13 +75,12 @@ pub fn tighter() -> Case {
 /// The first load step counted, and the cube that the steps load.
 pub const FIRST_STEP: usize = 4;
 pub fn stepped(step: usize) -> Case {
-    Case { smalbe: None, ..case(format!("load_step_{step}"), Model::Cube(cubic(3, 4)), 1.1, None) }
+    case(format!("load_step_{step}"), Model::Cube(cubic(3, 4)), 1.1, None)
 }
 
 fn case(name: impl Into<String>, model: Model, goal: f64, published: Option<(usize, usize)>) -> Case {
     let published = published.map(|(linear, products)| Published { linear, products });
-    let smalbe = model.smalbe();
-    Case { name: name.into(), model, goal, published, all_closed: false, smalbe }
+    Case { name: name.into(), model, goal, published, all_closed: false }
 }
 
 /// side^3 subdomains of h^3 elements, clamped at x = 0.

@@ -34,27 +34,13 @@ pub fn reasons(case: &Case, m: &Measurement) -> Vec<String> {
     reasons
 }
 
-/// True where SMALBE-M with MPRGP needs fewer products than expected, against ours; one that gave up needs more than any.
-pub fn smalbe_is_near(case: &Case, m: &Measurement) -> bool {
-    case.smalbe.zip(m.smalbe).is_some_and(|(goal, products)| (products as f64) < goal * m.products as f64)
-}
-
-/// `SMALBE F <applications> (<times ours> x[, goal <g> ok|short])`
-fn smalbe(case: &Case, m: &Measurement) -> String {
-    let Some(products) = m.smalbe else { return "none".to_owned() };
-    let times = products as f64 / m.products as f64;
-    let word = if smalbe_is_near(case, m) { "short" } else { "ok" };
-    let goal = case.smalbe.map_or(String::new(), |goal| format!(", goal {goal:.1} {word}"));
-    format!("{products} ({times:.1} x{goal})")
-}
-
 /// The line of a deck and its details.
 pub fn line(case: &Case, m: &Measurement, reasons: &[String]) -> String {
     let word = if reasons.is_empty() { "ok" } else { "short" };
     let because = if reasons.is_empty() { String::new() } else { format!("; {}", reasons.join(", ")) };
     format!(
         "count {} F {} linear {} ratio {:.2} goal {:.2} {word}\n    M {}, coarse solves {}, coarse \
-         refactorisations {}, closed {} of {} rows ({:.0} %), {:.2} s, in all {:.1} s, SMALBE F {}{because}",
+         refactorisations {}, closed {} of {} rows ({:.0} %), {:.2} s, in all {:.1} s{because}",
         case.name,
         m.products,
         m.linear,
@@ -68,6 +54,5 @@ pub fn line(case: &Case, m: &Measurement, reasons: &[String]) -> String {
         m.closed_percent(),
         m.seconds,
         m.seconds_in_all,
-        smalbe(case, m),
     )
 }

@@ -403,7 +403,7 @@ fn number_option(host: &mut Host, option: &feti_option, name: *const c_char, cho
 }
 
 fn word_option(host: &mut Host, name: *const c_char, choice: u8) -> i32 {
-    const WORDS: [&str; 17] = [
+    const WORDS: [&str; 16] = [
         "automatic",
         "none",
         "lumped",
@@ -411,7 +411,6 @@ fn word_option(host: &mut Host, name: *const c_char, choice: u8) -> i32 {
         "explicit",
         "implicit",
         "proportioning",
-        "smalbe",
         "cold",
         "previous",
         "direct",

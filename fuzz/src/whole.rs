@@ -145,7 +145,7 @@ pub fn log(host: &mut Host) {
 pub fn options(host: &mut Host) {
     const TEXTS: [&CStr; 10] = [
         c"tolerance=1e-6 max_steps=20",
-        c"threads=2, method=smalbe",
+        c"threads=2, method=paper-monotone",
         c"method=proportioning preconditioner=dirichlet",
         c"finish=direct\n# comment\ndual_operator=implicit",
         c"start=previous",

@@ -10,8 +10,6 @@ use crate::linalg::twofold::Twofold;
 pub(super) struct Energies {
     /// `u'K u`
     strain: f64,
-    /// `u'K u` of bodies without grounded unknowns.
-    pub deforming: f64,
     /// `f'u`
     work: f64,
     /// `|u|'(|K||u| + |f| + |B'||lambda| + |H'||mu|)`
@@ -40,9 +38,6 @@ impl Energies {
         // rounding of a long sum would be many times that of its terms
         let strain = Twofold::dot(u, strain);
         self.strain += strain;
-        if field.data.bodies[p].grounded.is_empty() {
-            self.deforming += strain;
-        }
         let loads: Vec<f64> = range.map(|j| field.load(p, j)).collect();
         self.work += Twofold::dot(&loads, u);
         self.terms += u.iter().zip(terms).zip(&given).map(|((u, t), g)| u.abs() * (t + g)).sum::<f64>();
@@ -74,10 +69,9 @@ impl Energies {
     }
 
     /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`, with friction and `s_old'lambda_t + lambda_t'C_t
-    /// lambda_t + b |s|` of every node, relative to `tol` times the sum of the sizes of its terms plus rounding; V is the
-    /// work of the loads, if known.
-    pub fn entry(&self, limit: f64, work_of_loads: f64) -> Entry {
-        let noise = NOISE * (self.terms + self.forces.max(work_of_loads) + self.stored) + self.rounding;
+    /// lambda_t + b |s|` of every node, relative to `tol` times the sum of the sizes of its terms plus rounding.
+    pub fn entry(&self, limit: f64) -> Entry {
+        let noise = NOISE * (self.terms + self.forces + self.stored) + self.rounding;
         // if the squares of forces underflow, the energies are not known
         let noise = if self.acting && !noise.is_normal() { f64::NAN } else { noise };
         let size = self.strain.abs() + self.work.abs() + self.constrained_size;

@@ -99,13 +99,6 @@ impl Certificate {
         self.entries().iter().all(|entry| entry.ratio <= 1.0)
     }
 
-    /// Entries of forces and equilibrium pass, but a gap, a slip or an energy fails: rounding of the loads may be the
-    /// cause.
-    pub(super) fn only_motions_fail(&self) -> bool {
-        let forces = [self.equilibrium, self.balance, self.negative_force, self.friction_cone];
-        !self.passed() && forces.iter().all(|entry| entry.ratio <= 1.0)
-    }
-
     /// Merges the certificate of another island: the worst of each entry, and the sum of the energies.
     pub fn merge(&mut self, other: &Certificate) {
         self.limit = self.limit.max(other.limit);

@@ -20,6 +20,8 @@ pub(super) struct Forces {
     /// `|f|_{D^-1} + |r|_{D^-1}` of every body without its grounded unknowns, force; none if all its unknowns are
     /// grounded.
     sizes: Vec<Option<f64>>,
+    /// `||f| + |B'||lambda| + |H'||mu||_{D^-1}` of every body without its grounded unknowns, force.
+    terms: Vec<f64>,
     /// Bodies without load, except on grounded unknowns; a load below 64 eps of the forces of the island is none.
     unloaded: Vec<bool>,
     /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. If there is no such load, the
@@ -36,12 +38,13 @@ pub(super) struct Forces {
 
 impl Forces {
     pub fn new(field: &Field, deformation: &Deformation) -> Self {
-        let (mut sizes, mut loads, mut pushes) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut sizes, mut terms, mut loads, mut pushes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for p in 0..field.data.bodies.len() {
             let load = field.size(p, &field.free(p, |j| field.load(p, j)));
             let push = field.size(p, &field.free(p, |j| field.push[j]));
             let all = field.range(p).all(|j| field.grounded[j]);
             sizes.push((!all).then_some(load + push));
+            terms.push(field.size(p, &field.free(p, |j| field.load(p, j).abs() + field.push_terms[j])));
             loads.push(load);
             pushes.push(field.size(p, &field.push[field.range(p)]));
         }
@@ -58,7 +61,16 @@ impl Forces {
         let leverage = sizes.iter().zip(&strains).map(of_body).fold(of_grounded(field), f64::max);
         let strain = weighted_norm(&strains, |_| 1.0);
         let unloaded = loads.iter().map(|load| *load <= NOISE * forces).collect();
-        Self { sizes, unloaded, everywhere: forces + moved, strains, strain, leverage, acting: forces > 0.0 }
+        Self {
+            sizes,
+            terms,
+            unloaded,
+            everywhere: forces + moved,
+            strains,
+            strain,
+            leverage,
+            acting: forces > 0.0,
+        }
     }
 
     /// `part` of the forces of the island, force, if body p has neither a load nor larger forces; otherwise 0. Without a load forces
@@ -72,9 +84,14 @@ impl Forces {
         }
     }
 
-    /// Rounding of the largest forces of the island if a row touches a body without load and forces, (force x length)^1/2.
-    pub fn idle_at(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
-        let of = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0), NOISE);
+    /// Rounding of the forces on a body that a row touches, if they deform it no more than that, and of those of the island on a
+    /// body without load and forces, (force x length)^1/2.
+    pub fn rounding_at(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
+        let idle = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0), NOISE);
+        let of = |p: usize| {
+            let rounding = NOISE * self.terms[p];
+            idle(p).max(if self.strains[p] <= rounding { rounding } else { 0.0 })
+        };
         field.touched(field.rows(kind), i).map(of).fold(0.0, f64::max) / field.unit.sqrt()
     }
 
@@ -252,8 +269,8 @@ fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     let body = &field.data.bodies[p];
     let (motions, unit) = &field.motions[p];
     let Some(size) = forces.sizes[p].filter(|_| motions.cols > 0) else { return Ok(0.0) };
-    let terms = field.size(p, &field.free(p, |j| field.load(p, j).abs() + field.push_terms[j]));
-    let allowed = field.data.limit * size + NOISE * terms + forces.idle(p, size, field.data.accuracy);
+    let allowed =
+        field.data.limit * size + NOISE * forces.terms[p] + forces.idle(p, size, field.data.accuracy);
     // soft motions bend the body, and move grounded unknowns a little
     let felt = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
         if body.soft {

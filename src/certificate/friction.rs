@@ -124,11 +124,6 @@ impl JudgedNode {
         share(length(self.slip), gap_limit) * share(missing, self.bound + self.limit * self.largest)
     }
 
-    /// The larger ratio of the two conditions on the slip.
-    pub fn gap_ratio(&self, gap_limit: f64) -> f64 {
-        worse(self.unlawful(gap_limit), self.loose(gap_limit))
-    }
-
     pub fn state(&self, gap_limit: f64) -> FrictionState {
         let (force, slip) = (length(self.force), length(self.slip));
         let nothing = self.force_limit + self.bound_limit;

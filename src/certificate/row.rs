@@ -3,7 +3,7 @@
 use crate::certificate::deformation::Deformation;
 use crate::certificate::field::Field;
 use crate::certificate::forces::Forces;
-use crate::certificate::{positive, share, worse, NOISE};
+use crate::certificate::{positive, share, NOISE};
 use crate::constraints::RowKind;
 use crate::linalg::vector::ratio;
 
@@ -45,7 +45,9 @@ impl JudgedRow {
         let moved = rows.matrix.row_dot_abs(i, field.answer.u);
         let size = rows.matrix.row_dot_abs(i, &deformation.joined) + felt;
         let given = rows.rhs[i].abs() + rows.compliance[i] * force.abs();
-        let rounding = NOISE * (moved + given + cancelled) + rows.rounding(i);
+        // forces that do not deform a body are known to rounding, and so is its displacement
+        let by_forces = forces.rounding_at(field, kind, i) * field.compliance(kind, i).sqrt();
+        let rounding = NOISE * (moved + given + cancelled) + rows.rounding(i) + by_forces;
         // without a scale the row cannot be checked
         let known = scale > 0.0 || empty;
         let force_limit = forces.limit_of(field, kind, i);
@@ -94,15 +96,6 @@ impl JudgedRow {
             RowKind::Inequality => self.open.min(self.given_way * self.force.signum()).abs(),
             RowKind::Equality => self.open.abs(),
             RowKind::Tangential => self.slipping,
-        }
-    }
-
-    /// The worst ratio of the conditions on its gap, no unit; 0 for tangential rows, which are judged by node.
-    pub fn gap_ratio(&self) -> f64 {
-        match self.kind {
-            RowKind::Inequality => worse(self.violation(), self.complementarity()),
-            RowKind::Equality => self.violation(),
-            RowKind::Tangential => 0.0,
         }
     }
 }

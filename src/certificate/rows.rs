@@ -1,7 +1,5 @@
 //! Penetration, equality, sign and complementarity of each row, and the laws of friction at each node.
 
-use std::ops::Range;
-
 use crate::certificate::deformation::Deformation;
 use crate::certificate::field::Field;
 use crate::certificate::forces::Forces;
@@ -12,10 +10,8 @@ use crate::constraints::RowKind;
 use crate::linalg::vector::{ratio, weighted_norm};
 
 /// All rows of the island, contact rows, equality rows, tangential rows, and its nodes with friction.
-///
-/// What is judged separately has a kind and a number: those of a row, or `Tangential` and the number of a node.
 pub(super) struct Measured {
-    pub rows: [Vec<JudgedRow>; 3],
+    rows: [Vec<JudgedRow>; 3],
     nodes: Vec<JudgedNode>,
 }
 
@@ -30,29 +26,6 @@ impl Measured {
             own.zip(node.natural(field.unit)).for_each(|(row, part)| row.slipping = part.abs());
         }
         Self { rows, nodes }
-    }
-
-    /// All rows and nodes that are judged separately.
-    pub fn all(&self) -> impl Iterator<Item = (RowKind, usize)> + '_ {
-        let [contact, equalities, _] = &self.rows;
-        let counts = [contact.len(), equalities.len(), self.nodes.len()];
-        RowKind::ALL.into_iter().zip(counts).flat_map(|(kind, count)| (0..count).map(move |i| (kind, i)))
-    }
-
-    /// Its rows among the rows of this kind.
-    pub fn rows_of(&self, kind: RowKind, i: usize) -> Range<usize> {
-        match kind {
-            RowKind::Tangential => self.nodes[i].rows(),
-            _ => i..i + 1,
-        }
-    }
-
-    /// The worst ratio of the conditions on its gap or slip; no unit.
-    pub fn gap_ratio(&self, kind: RowKind, i: usize) -> f64 {
-        match kind {
-            RowKind::Tangential => self.nodes[i].gap_ratio(self.slip_limit(&self.nodes[i])),
-            _ => self.rows[kind as usize][i].gap_ratio(),
-        }
     }
 
     /// Slips of a node below this count as zero, length: the largest gap limit of its rows.
@@ -70,30 +43,16 @@ impl Measured {
     }
 
     /// Evaluates the entries of rows and nodes.
-    pub fn judge(&mut self, limit: f64, certificate: &mut Certificate) {
-        self.judge_gaps(limit, certificate, |_, _| true);
-        certificate.negative_force = worst(&self.rows[0], limit, JudgedRow::sign, |_| true);
-        certificate.friction_cone = worst(&self.nodes, limit, JudgedNode::outside, |_| true);
-    }
-
-    /// Evaluates the entries of gaps and slips for the rows and nodes selected by `counts`.
-    pub fn judge_gaps(
-        &self,
-        limit: f64,
-        certificate: &mut Certificate,
-        counts: impl Fn(RowKind, usize) -> bool,
-    ) {
+    pub fn judge(&self, limit: f64, certificate: &mut Certificate) {
         let [contact, equalities, _] = &self.rows;
-        let touches = |i| counts(RowKind::Inequality, i);
-        certificate.penetration = worst(contact, limit, JudgedRow::violation, touches);
-        certificate.complementarity = worst(contact, limit, JudgedRow::complementarity, touches);
-        let joins = |i| counts(RowKind::Equality, i);
-        certificate.equality = worst(equalities, limit, JudgedRow::violation, joins);
-        let rubs = |i| counts(RowKind::Tangential, i);
-        let unlawful = |node: &JudgedNode| node.unlawful(self.slip_limit(node));
-        certificate.friction_work = worst(&self.nodes, limit, unlawful, rubs);
-        let loose = |node: &JudgedNode| node.loose(self.slip_limit(node));
-        certificate.friction_stick = worst(&self.nodes, limit, loose, rubs);
+        certificate.negative_force = worst(contact, limit, JudgedRow::sign);
+        certificate.penetration = worst(contact, limit, JudgedRow::violation);
+        certificate.complementarity = worst(contact, limit, JudgedRow::complementarity);
+        certificate.equality = worst(equalities, limit, JudgedRow::violation);
+        let (outside, slip_limit) = (JudgedNode::outside, |node: &JudgedNode| self.slip_limit(node));
+        certificate.friction_cone = worst(&self.nodes, limit, outside);
+        certificate.friction_work = worst(&self.nodes, limit, |node| node.unlawful(slip_limit(node)));
+        certificate.friction_stick = worst(&self.nodes, limit, |node| node.loose(slip_limit(node)));
     }
 
     /// The largest unevenness of a row.
@@ -130,9 +89,9 @@ impl Measured {
     }
 }
 
-fn worst<T>(all: &[T], limit: f64, measure: impl Fn(&T) -> f64, counts: impl Fn(usize) -> bool) -> Entry {
+fn worst<T>(all: &[T], limit: f64, measure: impl Fn(&T) -> f64) -> Entry {
     let mut worst = Entry::default();
-    for (i, one) in all.iter().enumerate().filter(|(i, _)| counts(*i)) {
+    for (i, one) in all.iter().enumerate() {
         worst.replace_if_worse(Entry::new(measure(one), limit, Some(i)));
     }
     worst

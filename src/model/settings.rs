@@ -98,7 +98,7 @@ settings! {
     dual_operator: OperatorForm = Str(OperatorForm::WORDS[0]), NO_RANGE,
         c"Form of the dual operator of a body: explicit (assembled: a product reads 4 m^2 bytes for m rows); implicit (matrix-free: a product takes two triangular solves, which needs less memory but is slower); automatic (chosen by a model of the time; explicit for a body with functions of the host; implicit if memory_limit leaves no room).";
     method: Method = Str(Method::WORDS[0]), NO_RANGE,
-        c"Method for the dual problem: proportioning on its feasible set, with smalbe as fallback; smalbe, an augmented Lagrangian method, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and fallback.";
+        c"Method for the dual problem: proportioning on its feasible set; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and without another method where it gives up.";
     start: StartFrom = Str(StartFrom::WORDS[0]), NO_RANGE,
         c"Start of a solve: cold (no forces; the same input gives the same bits) or previous (forces and active set of the last answer for these rows); values of feti_start_from take precedence.";
     direct_limit: i64 = I64(1000), 0.0..=MANY,

@@ -51,7 +51,7 @@ words! {
     /// `dual_operator`
     OperatorForm: Automatic = c"automatic", Explicit = c"explicit", Implicit = c"implicit";
     /// `method`
-    Method: Proportioning = c"proportioning", Smalbe = c"smalbe", PaperFeasible = c"paper-feasible",
+    Method: Proportioning = c"proportioning", PaperFeasible = c"paper-feasible",
     PaperMonotone = c"paper-monotone", PaperExtrapolating = c"paper-extrapolating";
     /// `start`
     StartFrom: Cold = c"cold", Previous = c"previous";
@@ -74,6 +74,6 @@ mod tests {
             assert!(method.take(word.to_bytes()) && method.word() == *word);
         }
         assert_eq!(method, Method::PaperExtrapolating);
-        assert!(!method.take(b"Smalbe") && method == Method::PaperExtrapolating);
+        assert!(!method.take(b"Paper-monotone") && method == Method::PaperExtrapolating);
     }
 }

@@ -30,14 +30,22 @@ pub trait AcceptanceTest {
     fn has_better_data(&self) -> bool {
         false
     }
-    /// Corrects a solution that was not accepted with better data than A and b until it passes; none if that fails.
-    fn mended(&mut self, _: &Solution) -> Result<Option<Solution>> {
-        Ok(None)
+    /// Corrects a solution that was not accepted with better data than A and b.
+    fn mended(&mut self, _: &Solution) -> Result<Mended> {
+        Ok(Mended::Failed)
     }
     /// The scale without rigid travel, at the last accepted point; none before, or if the test does not compute it.
     fn length(&self) -> Option<f64> {
         None
     }
+}
+
+/// What correction by better data has found.
+pub enum Mended {
+    Accepted(Solution),
+    /// No answer passes, but these forces are close to one.
+    Near(Vec<f64>),
+    Failed,
 }
 
 /// Receives every step; an error ends the run, with the point reached if the error is `Cancelled` or `TimeOver`.

@@ -7,10 +7,10 @@
 //! A is only applied matrix-free; this layer does not know bodies.
 
 mod acceptance;
-mod active_set;
 mod between_solves;
 mod coarse;
 mod conjugate;
+mod face;
 pub mod friction;
 mod gradient;
 mod interior;
@@ -18,20 +18,17 @@ mod nearest;
 pub mod paper;
 mod projection;
 mod proportioning;
-mod proximal;
 mod restricted;
-mod smalbe;
 
-pub use acceptance::{AcceptanceTest, Limits, Observer, Solution, StepKind, StepReport, Verdict};
-pub use active_set::{active_set, Direct, Face};
+pub use acceptance::{AcceptanceTest, Limits, Mended, Observer, Solution, StepKind, StepReport, Verdict};
 pub use between_solves::BetweenSolves;
 pub use coarse::AnswerFace;
 pub use conjugate::MOST as KEPT;
+pub use face::{Direct, Face};
+pub use interior::{Interior, Inverse, Point, Stiffness};
 pub use nearest::{nearest_point, Nearest, Polyhedron};
 pub use proportioning::{minimise, not_held, weighted};
-pub use proximal::proximal;
 pub use restricted::{DirectOnRows, Judged, Restricted};
-pub use smalbe::smalbe;
 
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm, ratio};
 use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
-use crate::qp::interior::Interior;
+use crate::qp::interior::inside;
 use crate::qp::Qp;
 
 /// The nearest point and the multiplier beta of `G l = e`.
@@ -119,9 +119,8 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         }
         if cuts == PATIENCE {
             (cuts, end) = (cuts + 1, end.min(step + FURTHER_STEPS));
-            let interior = Interior { qp, y, held, delta: 1.0, rho: 0.0 };
-            let inside = interior.minimise(coarse, now.beta.clone())?;
-            let next = Trial::new(target, coarse, inside.multiplier);
+            let found = inside(qp, coarse, (y, held), (1.0, 0.0), now.beta.clone())?;
+            let next = Trial::new(target, coarse, found.motion);
             if next.phi(qp) < now.phi(qp) {
                 (error, now) = (next.error(qp, coarse), next);
             }

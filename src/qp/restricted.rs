@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::linalg::{Csr, Entries, Matrix, Operator};
-use crate::qp::{AcceptanceTest, Direct, Preconditioner, Qp, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Direct, Mended, Preconditioner, Qp, Solution, Verdict};
 
 pub struct Restricted<'a> {
     whole: Qp<'a>,
@@ -161,8 +161,11 @@ impl AcceptanceTest for Judged<'_> {
         self.whole.length()
     }
 
-    fn mended(&mut self, solution: &Solution) -> Result<Option<Solution>> {
-        let mended = self.whole.mended(&self.on.whole(solution.clone()))?;
-        Ok(mended.and_then(|mended| self.on.part(mended)))
+    fn mended(&mut self, solution: &Solution) -> Result<Mended> {
+        Ok(match self.whole.mended(&self.on.whole(solution.clone()))? {
+            Mended::Accepted(mended) => self.on.part(mended).map_or(Mended::Failed, Mended::Accepted),
+            Mended::Near(x) => Mended::Near(self.on.start(&x)),
+            Mended::Failed => Mended::Failed,
+        })
     }
 }

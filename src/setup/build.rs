@@ -162,7 +162,7 @@ impl Prepared {
 
 /// The methods of the paper use the rows of the host, scaled but not decoupled.
 fn coupled(settings: &Settings) -> bool {
-    !matches!(settings.method, Method::Proportioning | Method::Smalbe)
+    settings.method != Method::Proportioning
 }
 
 /// The unit of forces of an island, 2^p, relative to that of K of a body, a power of two. Above 2^1000 the stiffness of the

@@ -8,8 +8,8 @@ use crate::error::Result;
 use crate::linalg::vector::norm;
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
-use crate::qp::{AcceptanceTest, Solution, Verdict};
-use crate::solve::finish::finish;
+use crate::qp::{AcceptanceTest, Mended, Solution, Verdict};
+use crate::solve::finish::{finish, Finished};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
 
@@ -106,11 +106,7 @@ impl<'a> Certifier<'a> {
         let recovery = &self.recovery;
         let deformed = recovery.deformed(x)?;
         let mut recovered = recovery.recover(&deformed, x, alpha);
-        // more steps may remove an error that the certificate can otherwise excuse only by products with K+
-        let mut judgement = match self.missed.is_none() {
-            true => recovery.judged_strictly(&recovered)?,
-            false => recovery.judged(&recovered)?,
-        };
+        let mut judgement = recovery.judged(&recovered)?;
         let mut alpha_at_rest = None;
         if !judgement.certificate.passed() {
             // a large motion that nothing resists may hide the other errors
@@ -180,20 +176,21 @@ impl AcceptanceTest for Certifier<'_> {
         self.recovery.ready.whole.is_some()
     }
 
-    fn mended(&mut self, solution: &Solution) -> Result<Option<Solution>> {
+    fn mended(&mut self, solution: &Solution) -> Result<Mended> {
         let begun = Instant::now();
         let mut ending = self.ending(solution.clone())?;
         self.recovery.bring_to_rest(&mut ending, false)?;
-        let mended = finish(&self.recovery, &mut ending)?;
+        let Finished { replaced, inside } = finish(&self.recovery, &mut ending)?;
         self.spent += begun.elapsed();
-        if !mended && !ending.judgement.certificate.passed() {
-            return Ok(None);
+        if !replaced && !ending.judgement.certificate.passed() {
+            interrupt::check()?;
+            return Ok(inside.map_or(Mended::Failed, Mended::Near));
         }
         let Ending { solution, deformed, recovered, judgement } = ending;
         let point = (copied(&solution.x, "forces")?, copied(&solution.alpha, "amplitudes")?);
         self.accepted = Some(Accepted { point, alpha_at_rest: None, deformed, recovered, judgement });
         self.judged = Judged::Passed;
-        Ok(Some(Solution { verdict: Verdict::Solved, ..solution }))
+        Ok(Mended::Accepted(Solution { verdict: Verdict::Solved, ..solution }))
     }
 
     fn length(&self) -> Option<f64> {

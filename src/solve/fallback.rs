@@ -1,12 +1,11 @@
-//! The method that the options ask for and, if it gives up, other methods before the answer counts as incomplete.
+//! The method that the options ask for and, if it gives up, faces by the data of the host and a second start before the answer
+//! counts as incomplete.
 
 use crate::error::Result;
-use crate::model::{Method, Settings};
+use crate::model::Settings;
 use crate::progress::Steps;
 use crate::qp::paper::algorithm_3;
-use crate::qp::{
-    active_set, minimise, not_held, proximal, smalbe, AcceptanceTest, Direct, Limits, Qp, Solution, Verdict,
-};
+use crate::qp::{minimise, AcceptanceTest, Direct, Limits, Mended, Qp, Solution, Verdict};
 use crate::solve::paper;
 
 /// How the dual is solved.
@@ -22,9 +21,8 @@ pub struct Found {
     pub held: Vec<bool>,
 }
 
-/// S10 of docs/method.md: solves the dual. After proportioning follow proportioning without preconditioner and SMALBE-M,
-/// each from the end point of the first run and each followed by the direct method; if there are few rows, a finite
-/// method is last.
+/// S10 of docs/method.md: solves the dual by proportioning and, where that gives up, on faces by the data of the host; where these
+/// have no answer, by proportioning from an interior point.
 pub fn solve_dual(
     means: &MethodOptions,
     qp: Qp,
@@ -38,76 +36,44 @@ pub fn solve_dual(
     if let Some(parameters) = paper::parameters(settings) {
         return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, steps);
     }
-    if settings.method == Method::Smalbe {
-        return not_held(&qp, start)?.map_or_else(|| smalbe(qp, start, limits, judge, steps), Ok);
+    let mut solution = minimise(qp, start, limits, judge, steps)?;
+    if let Some(x) = on_faces(&mut solution, means.direct, judge, steps)? {
+        steps.line("the method starts again from the forces of an interior point".to_owned())?;
+        let again = minimise(qp, &x, limits, judge, steps).and_then(|mut again| {
+            on_faces(&mut again, means.direct, judge, steps)?;
+            Ok(again)
+        });
+        return better(solution, again);
     }
-    let first = minimise(qp, start, limits, judge, steps)?;
-    let mut best = or_directly(first, qp, means.direct, judge, steps)?;
-    let plain = Qp { preconditioner: None, ..qp };
-    if gave_up(&best) && qp.preconditioner.is_some() {
-        follows(&best, "proportioning without preconditioner", steps)?;
-        let next = minimise(plain, &best.x.clone(), limits, judge, steps);
-        let next = next.and_then(|next| or_directly(next, plain, means.direct, judge, steps));
-        best = better(best, next)?;
-    }
-    if gave_up(&best) {
-        follows(&best, "smalbe", steps)?;
-        let next = smalbe(plain, &best.x.clone(), limits, judge, steps);
-        let next = next.and_then(|next| or_directly(next, plain, means.direct, judge, steps));
-        best = better(best, next)?;
-    }
-    if is_incomplete(&best) && means.direct.limit > 0 {
-        if let Some(found) = proximal(plain, means.direct, &best).transpose() {
-            follows(&best, "nearest points of polyhedra", steps)?;
-            let next = found.and_then(|found| or_directly(found, plain, means.direct, judge, steps));
-            best = better(best, next)?;
-        }
-    }
-    Ok(best)
+    Ok(solution)
 }
 
-/// Logs that another method follows.
-fn follows(ended: &Solution, next: &str, steps: &mut Steps) -> Result<()> {
-    let why = match ended.verdict {
+/// Corrects an incomplete solution on faces by the data of the host; if none of them has an answer, forces close to one.
+fn on_faces(
+    solution: &mut Solution,
+    direct: Direct,
+    judge: &mut dyn AcceptanceTest,
+    steps: &mut Steps,
+) -> Result<Option<Vec<f64>>> {
+    let is_incomplete = gave_up(solution) || solution.verdict == Verdict::StepLimit;
+    if !is_incomplete || direct.limit == 0 {
+        return Ok(None);
+    }
+    let why = match solution.verdict {
         Verdict::StepLimit => "the limit of steps is reached",
         Verdict::Inaccurate => "the dual is solved, the certificate does not pass",
         Verdict::Unbounded { .. } => "theta seems to fall without end",
         _ => "steps no longer reduce the error",
     };
-    steps.line(format!("fallback after {} steps: {why}; {next} follows", ended.counts.steps()))
-}
-
-/// The given solution; if it is incomplete, that of the direct method with F, then that with the data of the host.
-fn or_directly(
-    solution: Solution,
-    qp: Qp,
-    direct: Direct,
-    judge: &mut dyn AcceptanceTest,
-    steps: &mut Steps,
-) -> Result<Solution> {
-    if !is_incomplete(&solution) {
-        return Ok(solution);
+    let after = solution.counts.steps();
+    steps.line(format!("after {after} steps {why}: direct solution on active sets follows"))?;
+    match judge.mended(solution) {
+        Ok(Mended::Accepted(mended)) => *solution = mended,
+        Ok(Mended::Near(x)) => return Ok(Some(x)),
+        Ok(Mended::Failed) => {}
+        Err(error) => solution.verdict = Verdict::of_refusal(error)?,
     }
-    if direct.limit > 0 {
-        follows(&solution, "direct solution on active sets", steps)?;
-    }
-    let next = active_set(qp, direct, &solution, judge);
-    let best = better(solution, next)?;
-    if is_incomplete(&best) && direct.limit > 0 {
-        let mended = judge.mended(&best).map(|mended| mended.unwrap_or_else(|| best.clone()));
-        return best.unless(mended);
-    }
-    Ok(best)
-}
-
-fn is_incomplete(solution: &Solution) -> bool {
-    gave_up(solution) || solution.verdict == Verdict::StepLimit
-}
-
-/// Contradictory rows were excluded before the dual is solved: a direction along which theta seems to fall without end is
-/// usually rounding.
-pub fn gave_up(solution: &Solution) -> bool {
-    matches!(solution.verdict, Verdict::Stalled | Verdict::Inaccurate | Verdict::Unbounded { .. })
+    Ok(None)
 }
 
 /// The accepted solution of the two, with the work of both; the first if the host or the time limit ended the second.
@@ -122,6 +88,12 @@ fn better(first: Solution, second: Result<Solution>) -> Result<Solution> {
         Verdict::Cancelled | Verdict::TimeLimit => Solution { counts, verdict: second.verdict, ..first },
         _ => Solution { counts, ..first },
     })
+}
+
+/// Contradictory rows were excluded before the dual is solved: a direction along which theta seems to fall without end is
+/// usually rounding.
+pub fn gave_up(solution: &Solution) -> bool {
+    matches!(solution.verdict, Verdict::Stalled | Verdict::Inaccurate | Verdict::Unbounded { .. })
 }
 
 #[cfg(test)]
@@ -183,12 +155,13 @@ mod tests {
                 let mut lines = Lines::default();
                 let stops = Stops::never();
                 let mut steps = Steps::new(0, 1.0, qp.bounded, stops, &mut lines);
-                let ended = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
-                let done = or_directly(ended, qp, Direct { limit, ..direct }, judge, &mut steps);
-                let done = done.unwrap();
+                let mut done = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
+                let near = on_faces(&mut done, Direct { limit, ..direct }, judge, &mut steps);
+                assert!(near.unwrap().is_none());
                 assert_eq!(done.verdict, verdict);
                 assert_eq!(done.x[0] == 2.0, verdict == Verdict::Solved);
-                let line = "fallback after 0 steps: the limit of steps is reached; direct solution on active sets follows";
+                let line =
+                    "after 0 steps the limit of steps is reached: direct solution on active sets follows";
                 assert_eq!(lines.0, [line].repeat(usize::from(limit > 0)));
             });
         }

@@ -18,7 +18,7 @@ use crate::solve::gaps::Gaps;
 /// The variant of Algorithm 1; none if `method` is not one of the paper.
 fn variant(settings: &Settings) -> Option<Variant> {
     match settings.method {
-        Method::Proportioning | Method::Smalbe => None,
+        Method::Proportioning => None,
         Method::PaperFeasible => Some(Variant::Feasible),
         Method::PaperMonotone => Some(Variant::Monotone),
         Method::PaperExtrapolating => Some(Variant::Extrapolating),

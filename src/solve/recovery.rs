@@ -1,9 +1,9 @@
 //! From a point of the dual problem of one island to the answer in the units of the host (17), the residuals of loads and
 //! gaps, and the certificate.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 
-use crate::certificate::{certify, BodyData, Candidate, Data, Judgement, Response, Unasked};
+use crate::certificate::{certify, BodyData, Candidate, Data, Judgement};
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
@@ -14,7 +14,6 @@ use crate::platform::memory::copied;
 use crate::qp::{Direct, Qp, Solution};
 use crate::setup::Ready;
 use crate::solve::case::Case;
-use crate::solve::response::ByInverse;
 use crate::solve::rigid::{unresisted, Cleaner};
 use crate::solve::scaled::Scaled;
 
@@ -57,8 +56,6 @@ pub struct Recovery<'a> {
     pub data: Data<'a>,
     pub threads: usize,
     pub faces: Faces<'a>,
-    /// V of the loads, if already computed.
-    work: Cell<Option<f64>>,
     /// Cleaners of the rigid motions of the bodies, if already made.
     cleaners: RefCell<Vec<Option<Cleaner>>>,
     /// K+ of some body amplifies rounding by more than 1 / `SOFT`.
@@ -92,7 +89,6 @@ impl<'a> Recovery<'a> {
             data,
             threads: case.threads(),
             faces,
-            work: Cell::new(None),
             cleaners,
             soft,
             friction: case.has_friction(),
@@ -211,25 +207,13 @@ impl<'a> Recovery<'a> {
         self.judged_on(&self.data, answer)
     }
 
-    /// The judgement by data with other loads; only rounding of the loads may differ.
+    /// The judgement by data with other loads; only rounding of the loads may differ. If bodies are cut, the answer of the uncut
+    /// bodies is judged.
     pub fn judged_on(&self, data: &Data, answer: &Recovered) -> Result<Judgement> {
-        let Self { ready, threads, work, .. } = self;
-        let mut response = ByInverse { data, ready, threads: *threads, work };
-        self.certified(data, answer, &mut response)
-    }
-
-    /// If bodies are cut, the answer of the uncut bodies is judged: K+ of these bodies, by which rounding might be
-    /// excused, is not known.
-    fn certified(&self, data: &Data, answer: &Recovered, response: &mut dyn Response) -> Result<Judgement> {
         interrupt::part(CERTIFICATE, || match &self.ready.whole {
             Some(whole) => whole.judged(self.model, data, answer.view()),
-            None => certify(data, answer.view(), response),
+            None => certify(data, answer.view()),
         })
-    }
-
-    /// The judgement without excuses by rounding of the loads; it needs no product with K+.
-    pub fn judged_strictly(&self, answer: &Recovered) -> Result<Judgement> {
-        self.certified(&self.data, answer, &mut Unasked)
     }
 
     /// The answer of a solution.

@@ -4,7 +4,9 @@
 use crate::error::Result;
 use crate::model::Settings;
 use crate::progress::Steps;
-use crate::qp::{AcceptanceTest, Counts, DirectOnRows, Judged as OnRows, Qp, Restricted, Solution, Verdict};
+use crate::qp::{
+    AcceptanceTest, Counts, DirectOnRows, Judged as OnRows, Mended, Qp, Restricted, Solution, Verdict,
+};
 use crate::solve::case::Case;
 use crate::solve::certifier::{Assumed, Certifier, Judged};
 use crate::solve::fallback::{solve_dual, Found, MethodOptions};
@@ -71,8 +73,8 @@ pub fn solve_in_rounds<'a>(
         step = match next {
             Ok(Next::Step(next)) => next,
             Ok(Next::Mend(next)) => match judge.mended(&solution) {
-                Ok(Some(mended)) => return Ok(mended),
-                Ok(None) => next,
+                Ok(Mended::Accepted(mended)) => return Ok(mended),
+                Ok(_) => next,
                 Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
             },
             Ok(Next::End(verdict)) => return Ok(Solution { verdict, ..solution }),

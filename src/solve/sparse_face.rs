@@ -9,18 +9,22 @@
 
 use std::sync::Arc;
 
-use crate::body::Stiffness;
+use crate::body;
 use crate::error::Result;
 use crate::linalg::cholesky::{Analysis, Cholesky};
 use crate::linalg::sparse::gram::Gram;
-use crate::linalg::vector::NOISE;
+use crate::linalg::vector::{axpy, weighted_norm, NOISE};
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::zeros;
+use crate::platform::memory::{copied, zeros};
 use crate::platform::{interrupt, tally};
+use crate::qp::{Interior, Inverse, Point, Stiffness};
+use crate::solve::gaps::Gaps;
 use crate::solve::recovery::Recovery;
 
 /// 1/c is this multiple of the stiffest unknown of the row: much more loses digits of K, much less takes many corrections.
 const STIFFER: f64 = 1e3;
+/// Part of c at which rows of the interior point method yield: forces of rows that nearly depend on others settle slowly.
+const CLOSED: f64 = 1e-6;
 /// Rows with more entries would fill the factor.
 const WIDE: usize = 100;
 
@@ -45,25 +49,61 @@ pub struct SparseFace<'a> {
     pub rows: Vec<usize>,
     /// W
     weight: Vec<f64>,
-    /// Of `S (K + B_F' W B_F) S` with S = diag(.)^-1/2.
+    factor: Factor,
+}
+
+/// The factor of `S (K + B' W B) S` with S = diag(.)^-1/2.
+struct Factor {
     factor: Cholesky,
     scale: Vec<f64>,
+}
+
+impl Inverse for Factor {
+    fn solve(&self, load: &[f64]) -> Result<Vec<f64>> {
+        let mut motion: Vec<f64> = load.iter().zip(&self.scale).map(|(v, s)| v * s).collect();
+        self.factor.solve(&mut motion)?;
+        motion.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
+        Ok(motion)
+    }
+}
+
+/// K of the island, for the interior point method.
+struct OfIsland<'a> {
+    faces: &'a SparseFaces<'a>,
+    metric: &'a [f64],
+}
+
+impl Stiffness for OfIsland<'_> {
+    fn subtract(&self, a: &[f64], left: &mut [f64]) -> Result<()> {
+        let mut image = zeros(a.len(), WHAT)?;
+        self.faces.k.mul(a, &mut image);
+        axpy(-1.0, &image, left);
+        Ok(())
+    }
+
+    fn size(&self, loads: &[f64]) -> f64 {
+        weighted_norm(loads, |j| 1.0 / self.metric[j])
+    }
+
+    fn with_rows(&mut self, weights: &[f64]) -> Result<Option<Box<dyn Inverse + '_>>> {
+        Ok(self.faces.factor(weights)?.map(|factor| Box::new(factor) as _))
+    }
 }
 
 impl<'a> SparseFaces<'a> {
     /// None if some K is not given by its entries, or rows are wide.
     pub fn of(recovery: &Recovery<'a>) -> Result<Option<Self>> {
-        let (dual, own) = (&recovery.ready.dual, &recovery.ready.rows);
+        let own = &recovery.ready.rows;
         let (rows, metric) = (&own.matrix, &own.metric);
         let wide = |i: usize| rows.ptr[i + 1] - rows.ptr[i] > WIDE;
-        if dual.springs > 0 || (0..rows.rows()).any(wide) {
+        if (0..rows.rows()).any(wide) {
             return Ok(None);
         }
         let gram = Gram::of(rows)?;
         let (pattern, unit) = (gram.pattern(), recovery.ready.island.unit);
         let mut k = Symmetric::with_room(metric.len(), pattern.col.len(), WHAT)?;
         for body in &recovery.data.bodies {
-            let Stiffness::Matrix(own) = body.stiffness else { return Ok(None) };
+            let body::Stiffness::Matrix(own) = body.stiffness else { return Ok(None) };
             for i in 0..own.order() {
                 let stiff = own.lower_row(i).map(|(j, v)| (body.start + j, v / unit));
                 k.push_row(merged(stiff, pattern.lower_row(body.start + i).map(|(j, _)| (j, 0.0))));
@@ -80,10 +120,56 @@ impl<'a> SparseFaces<'a> {
 
     /// None if the matrix of this face is not positive semidefinite.
     pub fn on(&'a self, rows: Vec<usize>) -> Result<Option<SparseFace<'a>>> {
+        let mut weight = zeros(self.rows.rows(), WHAT)?;
+        let own = rows.iter().copied().filter(|&i| i < weight.len());
+        own.collect::<Vec<_>>()
+            .into_iter()
+            .for_each(|i| weight[i] = self.compliance[i].max(self.least[i]).recip());
+        let factor = self.factor(&weight)?;
+        Ok(factor.map(|factor| SparseFace { faces: self, rows, weight, factor }))
+    }
+
+    /// The point of an interior point method, and the rows that it shows without a force.
+    pub fn inside(&self, recovery: &Recovery) -> Result<Option<(Vec<bool>, Point)>> {
+        let (Gaps { dual, value, bounded, far, .. }, e) = (&recovery.scaled.gaps, &recovery.scaled.load);
+        let m = self.rows.rows();
+        let held: Vec<bool> = (0..m).map(|i| far[i] || value[i] == f64::INFINITY).collect();
+        let gap: Vec<f64> = (0..m).map(|i| if held[i] { 0.0 } else { dual[i] }).collect();
+        // rows have the compliance 1
+        let first: Vec<f64> = self.compliance.iter().map(|c| c.max(1.0)).collect();
+        let weight: Vec<f64> = (0..m).map(|i| if held[i] { 0.0 } else { 1.0 / first[i] }).collect();
+        let Some(factor) = self.factor(&weight)? else { return Ok(None) };
+        let pull: Vec<f64> = weight.iter().zip(&gap).map(|(w, c)| w * c).collect();
+        let mut load = copied(e, WHAT)?;
+        self.rows.mul_transposed_add(1.0, &pull, &mut load);
+        let motion = factor.solve(&load)?;
+        let mut stiffness = OfIsland { faces: self, metric: &recovery.ready.rows.metric };
+        let mean = stiffness.size(e).powi(2) / m as f64;
+        let least: Vec<f64> =
+            self.compliance.iter().zip(&self.least).map(|(c, least)| c.max(CLOSED * least)).collect();
+        let interior = Interior {
+            rows: self.rows,
+            e,
+            bounded,
+            held: &held,
+            gap: &gap,
+            compliance: self.compliance,
+            first: &first,
+            least: &least,
+            mean,
+        };
+        let mut point = interior.solve(&mut stiffness, motion)?;
+        let Point { force, slack, .. } = &point;
+        let active = |i: usize| bounded[i] && (held[i] || force[i] * first[i] < slack[i]);
+        let active = (0..bounded.len()).map(|i| i < m && active(i)).collect();
+        point.force.resize(bounded.len(), 0.0);
+        Ok(Some((active, point)))
+    }
+
+    /// Of `K + B'W B`; none if it is not positive semidefinite.
+    fn factor(&self, weight: &[f64]) -> Result<Option<Factor>> {
         interrupt::check()?;
         tally::costly();
-        let mut weight = zeros(self.rows.rows(), WHAT)?;
-        rows.iter().for_each(|&i| weight[i] = self.compliance[i].max(self.least[i]).recip());
         let pressed = self.gram.weighted(self.rows, |i| weight[i])?;
         let diagonal = (0..self.k.order()).map(|i| self.k.diagonal(i) + pressed.diagonal(i));
         let scale: Vec<f64> = diagonal.map(|d| if d > 0.0 { d.sqrt().recip() } else { 1.0 }).collect();
@@ -93,7 +179,7 @@ impl<'a> SparseFaces<'a> {
             scaled.push_row(row.map(|(j, v)| (j, scale[i] * v * scale[j])));
         }
         let factor = self.analysis.pivoted(&scaled, 1.0, NOISE)?;
-        Ok(factor.ok().map(|factor| SparseFace { faces: self, rows, weight, factor, scale }))
+        Ok(factor.ok().map(|factor| Factor { factor, scale }))
     }
 }
 
@@ -101,20 +187,19 @@ impl SparseFace<'_> {
     /// du, and dx over all rows, for residual loads and gaps in units of 2^p.
     pub fn solve(&self, mut load: Vec<f64>, gaps: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let mut pull = zeros(gaps.len(), WHAT)?;
-        self.rows.iter().for_each(|&i| pull[i] = self.weight[i] * gaps[i]);
+        let rows = || self.rows.iter().copied().filter(|&i| i < self.weight.len());
+        rows().for_each(|i| pull[i] = self.weight[i] * gaps[i]);
         self.faces.rows.mul_transposed_add(1.0, &pull[..self.weight.len()], &mut load);
-        load.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
-        self.factor.solve(&mut load)?;
-        load.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
-        for &i in &self.rows {
-            pull[i] = self.weight[i] * (self.faces.rows.row_dot(i, &load) - gaps[i]);
+        let moved = self.factor.solve(&load)?;
+        for i in rows() {
+            pull[i] = self.weight[i] * (self.faces.rows.row_dot(i, &moved) - gaps[i]);
         }
-        Ok((load, pull))
+        Ok((moved, pull))
     }
 
     /// Motions that neither K nor the rows resist.
     pub fn undetermined(&self) -> usize {
-        self.factor.at_rest().len()
+        self.factor.factor.at_rest().len()
     }
 }
 

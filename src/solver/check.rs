@@ -1,12 +1,10 @@
 //! The certificate of an existing answer.
 
-use std::cell::Cell;
-
 use crate::certificate::{certify, Candidate, Certificate, Entry};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
-use crate::solve::{named, ByInverse, Case};
+use crate::solve::{named, Case};
 use crate::solver::decomposed::solved;
 use crate::solver::joints::with_glue;
 use crate::solver::problem::Problem;
@@ -57,10 +55,9 @@ impl Problem {
             let (lambda, mu) = (island.contact.gather(lambda), equalities.gather(mu));
             let tangential = island.friction.tangential.gather(tangential);
             let answer = Candidate { u: &own, lambda: &lambda, mu: &mu, tangential: &tangential };
-            let (data, work) = (Case { model, prepared, ready }.data()?, Cell::new(None));
-            let mut response = ByInverse { data: &data, ready, threads: model.threads(), work: &work };
+            let data = Case { model, prepared, ready }.data()?;
             let judged = match &ready.whole {
-                None => certify(&data, answer, &mut response)?,
+                None => certify(&data, answer)?,
                 Some(whole) => whole.judged(model, &data, answer)?,
             };
             let own = named(model, ready, judged.certificate);

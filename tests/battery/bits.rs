@@ -75,7 +75,6 @@ fn the_bits_of_many_answers() {
     ];
     let options = [
         "",
-        "method=smalbe",
         "method=paper-monotone",
         "method=paper-extrapolating dual_operator=implicit",
         "preconditioner=dirichlet threads=2",

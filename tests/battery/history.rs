@@ -209,6 +209,8 @@ fn an_answer_does_not_depend_on_what_the_problem_was_before() {
                 table.extend(differs.map(|what| format!("{name}: {what}")));
             }
             (Err(a), Err(b)) if a == b => {}
+            // rounding may decide
+            _ if condition > CONDITION => {}
             _ => ends.push(format!("{name}: {:?}, fresh {:?}", past.as_ref().err(), fresh.as_ref().err())),
         }
     }

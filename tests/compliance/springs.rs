@@ -97,11 +97,10 @@ fn springs_as_bodies_give_the_same_displacements_and_forces() {
 }
 
 #[test]
-fn so_they_do_with_preconditioners_and_by_smalbe() {
+fn so_they_do_with_preconditioners() {
     for deck in decks() {
         assert_same_answer(&deck, "proportioning", "lumped");
         assert_same_answer(&deck, "proportioning", "dirichlet");
-        assert_same_answer(&deck, "smalbe", "none");
     }
 }
 

@@ -117,7 +117,6 @@ fn bodies_of_both_kinds_go_together_on_any_threads_with_any_option() {
         ("dual_operator", "implicit"),
         ("preconditioner", "lumped"),
         ("preconditioner", "dirichlet"),
-        ("method", "smalbe"),
     ];
     for (name, value) in options {
         let mut bits = None;
@@ -253,7 +252,7 @@ fn the_methods_of_the_paper_take_functions_of_the_host() {
         .for_each(|(p, host)| host.give(&mut problem, p, false));
     solved(&mut problem);
     let expected = answer(&problem);
-    problem.set_str("method", "smalbe").unwrap();
+    problem.set_str("method", "paper-monotone").unwrap();
     solved(&mut problem);
-    assert_same(&answer(&problem), &expected, 1e-6, "smalbe");
+    assert_same(&answer(&problem), &expected, 1e-6, "paper-monotone");
 }

@@ -4,7 +4,7 @@
 use feti_contact::error::Result;
 use feti_contact::linalg::Csr;
 use feti_contact::qp::{
-    minimise, AcceptanceTest, Counts, Limits, Observer, Preconditioner, Qp, Solution, StepReport, Verdict,
+    minimise, AcceptanceTest, Limits, Observer, Preconditioner, Qp, Solution, StepReport, Verdict,
 };
 
 use crate::dense::{dot, norm, Dense};
@@ -80,18 +80,6 @@ impl Program {
         Qp { a, b, g_transposed, blocks: &[], rounding: 1e-14, e, bounded, preconditioner, kept: None }
     }
 
-    /// A method has given up at `start`, with alpha = 0.
-    pub fn given_up_at(&self, start: &[f64]) -> Solution {
-        Solution {
-            x: start.to_vec(),
-            alpha: vec![0.0; self.e.len()],
-            undetermined: 0,
-            scale: norm(&self.b),
-            verdict: Verdict::Stalled,
-            counts: Counts::default(),
-        }
-    }
-
     pub fn residuals(&self, x: &[f64], alpha: &[f64]) -> Residuals {
         let (image, coarse) = (self.a.times(x), self.g.transpose_times(alpha, x.len()));
         let part = |i: usize| {
@@ -160,7 +148,7 @@ impl Program {
     }
 }
 
-/// `minimise` or `smalbe`.
+/// `minimise`, or a method of the paper.
 pub type Method = fn(Qp, &[f64], Limits, &mut dyn AcceptanceTest, &mut dyn Observer) -> Result<Solution>;
 
 /// Accepts by the residuals of the optimality conditions.

@@ -194,7 +194,6 @@ fn every_method_and_option_knows_springs() {
     let deck = with_springs(column(2), 1e-6);
     let right = solved(&mut given(&deck, Modes::Soft)).unwrap();
     for (option, value) in [
-        ("method", "smalbe"),
         ("method", "paper-monotone"),
         ("preconditioner", "lumped"),
         ("preconditioner", "dirichlet"),

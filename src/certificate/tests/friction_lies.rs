@@ -108,7 +108,7 @@ fn right_answers_pass_also_to_rounding() {
     let mut largest = [0.0; 2];
     for (name, model) in models() {
         let right = model.accepted(&name);
-        let (judgement, _) = model.judged(&right);
+        let judgement = model.judged(&right);
         assert!(judgement.nodes.contains(&FrictionState::Slip), "{name} {judgement:?}");
         assert!(judgement.nodes.contains(&FrictionState::Stick), "{name} {judgement:?}");
         assert_eq!(judgement.nodes[PAIRS - 1], FrictionState::Open);
@@ -161,7 +161,7 @@ fn wrong_forces_and_slips_are_found_by_the_entries_of_friction() {
     let mut all = Vec::new();
     for (name, model) in models() {
         let (right, mut least) = (model.answer(), f64::INFINITY);
-        let states = model.judged(&right).0.nodes;
+        let states = model.judged(&right).nodes;
         let mut liar = Liar { name: &name, model: &model, right: &right, least: &mut least };
         for (node, state) in states.iter().enumerate() {
             match state {
@@ -197,7 +197,7 @@ fn answers_of_another_law_are_found() {
     let mut all = Vec::new();
     for (name, model) in models() {
         let (right, mut least) = (model.answer(), f64::INFINITY);
-        let states = model.judged(&right).0.nodes;
+        let states = model.judged(&right).nodes;
         let of = |change: &dyn Fn(&mut DenseModel)| {
             let mut other = model.clone();
             change(&mut other);
@@ -266,7 +266,7 @@ fn units_that_differ_by_powers_of_two_change_no_bit_of_friction() {
                 mu: vec![],
                 tangential: scaled(&answer.tangential, f),
             };
-            let (judgement, _) = model(k, f).judged(&point);
+            let judgement = model(k, f).judged(&point);
             (judgement.certificate.entries(), judgement.bodies, judgement.nodes)
         };
         for (a, b) in [(1, 0), (0, 1), (-31, 17), (100, -100)] {
@@ -282,7 +282,7 @@ fn neither_factors_of_nodes_nor_their_order_change_what_is_judged() {
     for times in [1.0 + 1e-5, 0.5] {
         let mut wrong = model.answer();
         wrong.tangential[..2].iter_mut().for_each(|force| *force *= times);
-        let (one, _) = model.judged(&wrong);
+        let one = model.judged(&wrong);
         let (mut other, mut point) = (model.clone(), wrong.clone());
         for (i, factor) in [0.3, 1.7, 2e-4, 7e3].into_iter().enumerate() {
             let node = &mut other.nodes[i];
@@ -294,7 +294,7 @@ fn neither_factors_of_nodes_nor_their_order_change_what_is_judged() {
         other.nodes.reverse();
         let forces = point.tangential.chunks(2).rev().flatten().copied().collect();
         point.tangential = forces;
-        let (two, _) = other.judged(&point);
+        let two = other.judged(&point);
         for (one, two) in entries(&one.certificate).into_iter().zip(entries(&two.certificate)) {
             assert!((one.ratio - two.ratio).abs() <= 1e-6 * (one.ratio + 1.0), "{one:?} {two:?}");
             let at = |place: Option<usize>| place.map_or(0, |i| PAIRS - 1 - i);

@@ -159,58 +159,6 @@ pub fn solve(a: &Dense, b: &[f64]) -> Vec<f64> {
     x
 }
 
-/// K+ by elimination in the bordered matrix.
-pub struct ByElimination<'a>(pub &'a DenseModel, pub usize);
-
-impl ByElimination<'_> {
-    fn work(&self, load: &[f64]) -> f64 {
-        let (mut work, mut start) = (0.0, 0);
-        for part in &self.0.parts {
-            let (n, basis) = (part.k.len(), part.null_space());
-            let mut a = vec![vec![0.0; n + basis.cols]; n + basis.cols];
-            for i in 0..n {
-                a[i][..n].copy_from_slice(&part.k[i]);
-                for k in 0..basis.cols {
-                    a[i][n + k] = part.k[i][i] * basis.get(i, k);
-                    a[n + k][i] = a[i][n + k];
-                }
-            }
-            let mut b = load[start..start + n].to_vec();
-            b.resize(n + basis.cols, 0.0);
-            let v = solve(&a, &b);
-            work += (0..n).map(|i| v[i] * load[start + i]).sum::<f64>();
-            start += n;
-        }
-        work
-    }
-}
-
-impl Response for ByElimination<'_> {
-    fn work_of_loads(&mut self) -> Result<f64> {
-        self.1 += 1;
-        let mut load = Vec::new();
-        for part in &self.0.parts {
-            let from = load.len();
-            load.extend_from_slice(&part.load);
-            grounded((&part.matrix()).into())?.iter().for_each(|j| load[from + *j as usize] = 0.0);
-        }
-        Ok(self.work(&load))
-    }
-
-    fn compliance_of(&mut self, kind: RowKind, row: usize) -> Result<f64> {
-        self.1 += 1;
-        let tangential = self.0.tangential();
-        let rows = match kind {
-            RowKind::Inequality => &self.0.contact,
-            RowKind::Equality => &self.0.equalities,
-            RowKind::Tangential => &tangential,
-        };
-        let mut load = vec![0.0; self.0.unknowns()];
-        rows[row].0.iter().for_each(|&(j, v)| load[j] = v);
-        Ok(self.work(&load))
-    }
-}
-
 impl DenseModel {
     pub fn unknowns(&self) -> usize {
         self.parts.iter().map(|part| part.k.len()).sum()
@@ -227,8 +175,8 @@ impl DenseModel {
         }
     }
 
-    /// The judgement, and the number of products with K+.
-    pub fn judged(&self, point: &DenseAnswer) -> (Judgement, usize) {
+    /// The judgement.
+    pub fn judged(&self, point: &DenseAnswer) -> Judgement {
         let n = self.unknowns();
         let (contact, equalities) = (Self::rows(&self.contact, n), Self::rows(&self.equalities, n));
         let matrices: Vec<Symmetric> = self.parts.iter().map(DenseBody::matrix).collect();
@@ -260,13 +208,11 @@ impl DenseModel {
         let none = vec![0.0; tangential.len()];
         let tangential = if point.tangential.is_empty() { &none } else { &point.tangential };
         let answer = Candidate { u: &point.u, lambda: &point.lambda, mu: &point.mu, tangential };
-        let mut response = ByElimination(self, 0);
-        let judgement = certify(&data, answer, &mut response).unwrap();
-        (judgement, response.1)
+        certify(&data, answer).unwrap()
     }
 
     pub fn certificate(&self, point: &DenseAnswer) -> Certificate {
-        self.judged(point).0.certificate
+        self.judged(point).certificate
     }
 
     /// The correct answer passes, also rounded to 15 digits.

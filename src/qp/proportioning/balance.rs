@@ -8,7 +8,7 @@ use crate::linalg::vector::{norm, norm_max, ratio};
 use crate::linalg::Csr;
 use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
-use crate::qp::interior::{Interior, Point};
+use crate::qp::interior::{self, Point};
 use crate::qp::{nearest_point, Polyhedron, Qp};
 
 /// A correlation with the residual is zero if it is below this part of its terms.
@@ -107,16 +107,16 @@ fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
         }
         pressed.into_iter().for_each(|i| held[i] = false);
     }
-    let Point { force, multiplier, .. } = inside(qp, coarse, HARDLY_UNIQUE)?;
-    Ok((force, multiplier))
+    let Point { force, motion, .. } = inside(qp, coarse, HARDLY_UNIQUE)?;
+    Ok((force, motion))
 }
 
 /// The interior point solution of `|e - G l|^2 + delta |l|^2`, delta in units of the largest diagonal entry of `G G'`:
 /// its a satisfies `G_i'a <= delta l_i`.
 fn inside(qp: &Qp, coarse: &mut Coarse, delta: f64) -> Result<Point> {
     let (y, none) = (vec![0.0; qp.b.len()], vec![false; qp.b.len()]);
-    let interior = Interior { qp, y: &y, held: &none, delta: delta * coarse.largest(), rho: 1.0 };
-    interior.minimise(coarse, vec![0.0; qp.e.len()])
+    let delta = delta * coarse.largest();
+    interior::inside(qp, coarse, (&y, &none), (delta, 1.0), vec![0.0; qp.e.len()])
 }
 
 /// The held rows that a presses: `G_i'a > 0` by more than rounding.

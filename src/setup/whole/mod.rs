@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::body::GeneralizedInverse;
-use crate::certificate::{certify, grounded, BodyData, Candidate, Data, Judgement, Unasked};
+use crate::certificate::{certify, grounded, BodyData, Candidate, Data, Judgement};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::power_of_two_below;
@@ -106,12 +106,11 @@ impl Whole {
         Ok(Some(Self { island, bodies, body_of, place }))
     }
 
-    /// The judgement of an answer of the pieces by bodies and rows of the host; `data`: the pieces with their loads. K+
-    /// of cut bodies, by which rounding might be excused, is not known.
+    /// The judgement of an answer of the pieces by bodies and rows of the host; `data`: the pieces with their loads.
     pub fn judged(&self, model: &Model, data: &Data, answer: Candidate) -> Result<Judgement> {
         let (u, loads) = (self.mean(answer.u)?, self.loads(data)?);
         let mu = &answer.mu[..self.island.equalities.numbers.len()];
-        certify(&self.data(model, &loads)?, Candidate { u: &u, mu, ..answer }, &mut Unasked)
+        certify(&self.data(model, &loads)?, Candidate { u: &u, mu, ..answer })
     }
 
     /// The weighted mean of the copies of every unknown.

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::collections::HashMap;
 
-use crate::certificate::{Response, NOISE};
+use crate::certificate::NOISE;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm, norm_max, weighted_norm};
@@ -12,7 +12,7 @@ use crate::model::{contradiction, proof_of_rows};
 use crate::qp::{nearest_point, Polyhedron};
 use crate::solve::case::Case;
 use crate::solve::gaps::Gaps;
-use crate::solve::response::ByInverse;
+use crate::solve::work::work_of_loads;
 
 /// A displacement that exceeds all motion demanded by rows and caused by loads by this factor cannot satisfy the rows.
 const BEYOND: f64 = 1e6;
@@ -145,11 +145,12 @@ impl<'a> Contradictions<'a> {
 
     /// V^1/2 of the loads, a length in the metric D / 2^p.
     fn moved(&self) -> Result<f64> {
-        let ready = self.case.ready;
-        let data = &self.case.data()?;
-        let work =
-            ByInverse { data, ready, threads: self.case.threads(), work: &self.work }.work_of_loads()?;
-        Ok((work / ready.island.unit).sqrt())
+        let work = match self.work.get() {
+            Some(work) => work,
+            None => work_of_loads(self.case)?,
+        };
+        self.work.set(Some(work));
+        Ok((work / self.case.ready.island.unit).sqrt())
     }
 
     /// |S c_-, S_H h|: the motion that the rows demand, a length.

@@ -117,7 +117,7 @@ fn at_most_one_product_coarse_solve_or_factorisation_follows_after_any_look() {
     for stop in [Stop::Time, Stop::Host] {
         all_ended(&masonry::tower(3), "", stop, true);
         all_ended(&masonry::tower(2), "preconditioner=dirichlet", stop, true);
-        all_ended(&masonry::wall(2, 1e-4), "method=smalbe", stop, true);
+        all_ended(&masonry::wall(2, 1e-4), "method=paper-monotone", stop, true);
         all_ended(&pushed_aside(masonry::chain(3)), "", stop, true);
         all_ended(&contradicting(masonry::tower(3)), "", stop, true);
     }

@@ -14,6 +14,24 @@ use crate::platform::{interrupt, tally};
 use crate::qp::coarse::Coarse;
 use crate::qp::Qp;
 
+/// Number of square matrices over all rows and modes of a face in memory.
+const MATRICES: usize = 8;
+
+/// Data for dense factors of faces in addition to the problem.
+#[derive(Clone, Copy)]
+pub struct Direct<'a> {
+    pub entries: &'a dyn Entries,
+    /// Limit of the total number of free rows and modes: memory and work grow with its second and third power.
+    pub limit: usize,
+}
+
+impl Direct<'_> {
+    /// Largest number of bytes for this total number of free rows and modes.
+    pub fn bytes(order: usize) -> usize {
+        order.saturating_mul(order).saturating_mul(MATRICES * size_of::<f64>())
+    }
+}
+
 pub struct Face<'a> {
     qp: Qp<'a>,
     /// F, n rows, ascending.

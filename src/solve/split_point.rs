@@ -1,0 +1,182 @@
+//! A point of the finish: forces and displacements in two doubles, corrected on one face by the residuals of the host's data.
+
+use crate::certificate::NOISE;
+use crate::error::Result;
+use crate::linalg::twofold::TwofoldVector;
+use crate::linalg::vector::{axpy, weighted_norm};
+use crate::qp::Point;
+use crate::solve::feedback::{Feedback, NegativeMotions};
+use crate::solve::gaps::Gaps;
+use crate::solve::recovery::{Ending, Recovery};
+use crate::solve::slides::FAR;
+use crate::solve::sparse_face::SparseFace;
+
+/// The factors of a face: dense ones of F and the modes, or sparse ones of the island.
+#[derive(Clone, Copy)]
+pub enum FaceSolver<'a> {
+    Dense(&'a Feedback<'a>),
+    Sparse(&'a SparseFace<'a>),
+}
+
+impl FaceSolver<'_> {
+    pub fn undetermined(&self) -> usize {
+        match self {
+            Self::Dense(feedback) => feedback.face.undetermined(),
+            Self::Sparse(face) => face.undetermined(),
+        }
+    }
+}
+
+/// Forces x and amplitudes alpha with u = v + w: w are motions that K does not resist; in a sum with large w, v would
+/// lose its digits. v, w and x are in two doubles: where loads and forces nearly cancel, rounding of x would move v.
+pub struct SplitPoint {
+    v: TwofoldVector,
+    /// Amplitudes of the motions that v contains.
+    beta: Vec<f64>,
+    w: TwofoldVector,
+    x: TwofoldVector,
+    pub alpha: Vec<f64>,
+    /// A motion of a body is added to w where it is larger than v by this factor.
+    apart: f64,
+    /// The largest correction of each unknown on this face: its rounding is not seen in u where a row presses u to zero.
+    corrected: Vec<f64>,
+}
+
+impl SplitPoint {
+    /// The current answer, or zero if it does not pass: redundant rows may have spoilt its forces.
+    pub fn of(recovery: &Recovery, ending: &Ending, apart: f64) -> Result<Self> {
+        let Ending { solution, deformed, judgement, .. } = ending;
+        let modes = solution.alpha.len();
+        if !judgement.certificate.passed() {
+            return Ok(Self::at_origin(vec![0.0; deformed.len()], vec![0.0; solution.x.len()], modes, apart));
+        }
+        let deformed = recovery.deformed(&solution.x)?;
+        let mut point = Self::at_origin(deformed, solution.x.clone(), modes, apart);
+        point.turn(recovery, &solution.alpha)?;
+        Ok(point)
+    }
+
+    pub fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize, apart: f64) -> Self {
+        let none = vec![0.0; v.len()];
+        let (w, v, x) = (none.clone().into(), v.into(), x.into());
+        Self { w, v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart, corrected: none }
+    }
+
+    /// The point of an interior point method.
+    pub fn inside(recovery: &Recovery, found: &Point) -> Self {
+        let alpha = recovery.amplitudes(&found.motion);
+        let point = Self::at_origin(found.motion.clone(), found.force.clone(), alpha.len(), FAR);
+        Self { beta: alpha.clone(), alpha, ..point }
+    }
+
+    /// Adds R a and returns R a.
+    fn turn(&mut self, recovery: &Recovery, a: &[f64]) -> Result<Vec<f64>> {
+        let dual = &recovery.ready.dual;
+        let whole = dual.rigid_motion(a, self.v.len());
+        let mut motion = whole.clone();
+        let apart = recovery.clean(&mut motion, &self.v.values(), self.apart)?;
+        for (k, (body, apart)) in recovery.data.bodies.iter().zip(apart).enumerate() {
+            let to = if apart { &mut self.w } else { &mut self.v };
+            body.range().for_each(|j| to.add(j, motion[j]));
+            if !apart {
+                let modes = dual.modes_of(k);
+                axpy(1.0, &a[modes.clone()], &mut self.beta[modes]);
+            }
+        }
+        axpy(1.0, a, &mut self.alpha);
+        Ok(whole)
+    }
+
+    /// u - R alpha
+    pub fn deformed(&self, recovery: &Recovery) -> Vec<f64> {
+        let mut v = recovery.ready.dual.rigid_motion(&self.beta, self.v.len());
+        v.iter_mut().enumerate().for_each(|(j, motion)| *motion = self.v.get(j) - *motion);
+        v
+    }
+
+    /// u
+    pub fn displacement(&self) -> Vec<f64> {
+        let mut u = self.w.values();
+        axpy(1.0, &self.v.values(), &mut u);
+        u
+    }
+
+    fn gaps_left(&self, recovery: &Recovery) -> Vec<f64> {
+        recovery.gaps_left(&[self.v.parts(), self.w.parts()].concat(), &self.x.parts())
+    }
+
+    /// Sets the forces to 0 on rows outside the active set.
+    pub fn hold(&mut self, active: &[bool]) {
+        (0..active.len()).filter(|&i| active[i]).for_each(|i| self.x.set_to_zero(i));
+        self.corrected.fill(0.0);
+    }
+
+    /// x without the rounding of forces that are zero.
+    pub fn forces(&self, bounded: &[bool]) -> Vec<f64> {
+        let bounded = self.x.values().into_iter().zip(bounded);
+        bounded.map(|(x, bounded)| if *bounded { x.max(0.0) } else { x }).collect()
+    }
+
+    /// Solves (10)-(11) on the face for the residual loads and gaps, `f - K u - B'x` and `c + C x - B u`: every
+    /// correction reduces the errors of F and K+. Returns the length of the correction, `|.|_D`.
+    pub fn correct(
+        &mut self,
+        recovery: &Recovery,
+        negative: &NegativeMotions,
+        face: FaceSolver,
+    ) -> Result<f64> {
+        let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
+        let mut load = recovery.load_left(&self.v.parts(), &self.x.parts())?;
+        let left = self.gaps_left(recovery);
+        let (moved, forces) = match face {
+            FaceSolver::Sparse(face) => {
+                let (moved, mut forces) = face.solve(load, &left)?;
+                moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
+                let turn = recovery.amplitudes(&moved);
+                axpy(1.0, &turn, &mut self.alpha);
+                axpy(1.0, &turn, &mut self.beta);
+                // a spring of a body is its stiffness along a soft motion, which K contains
+                let first = forces.len() - dual.springs;
+
+                forces
+                    .iter_mut()
+                    .enumerate()
+                    .skip(first)
+                    .for_each(|(i, force)| *force = dual.coarse.row_dot(i, &turn));
+                (moved, forces)
+            }
+            FaceSolver::Dense(feedback) => {
+                let face = &feedback.face;
+                let mut gaps = vec![0.0; self.x.len()];
+                face.rows().iter().for_each(|&i| gaps[i] = left[i]);
+                let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
+                let force = face.rows().iter().map(|&i| d[i]).collect();
+                let (step, turn) = feedback.solve(negative, force, &dual.resultants(&load))?;
+                let mut forces = vec![0.0; self.x.len()];
+                face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
+                rows.take_forces(&forces, &mut load);
+                let mut moved = recovery.inverse(&load)?;
+                moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
+                axpy(1.0, &self.turn(recovery, &turn)?, &mut moved);
+                (moved, forces)
+            }
+        };
+        forces.iter().enumerate().for_each(|(i, force)| self.x.add(i, *force));
+        self.corrected.iter_mut().zip(&moved).for_each(|(most, by)| *most = most.max(by.abs()));
+        Ok(weighted_norm(&moved, |i| rows.metric[i]))
+    }
+
+    /// The active set by the signs of forces and gaps.
+    pub fn active(&self, recovery: &Recovery) -> Vec<bool> {
+        let (left, rows) = (self.gaps_left(recovery), &recovery.ready.rows.scaled);
+        let (u, x) = (self.displacement(), self.x.values());
+        let Gaps { value, bounded, .. } = &recovery.scaled.gaps;
+        let terms =
+            |i: usize| rows.row(i).map(|(j, v)| v.abs() * u[j].abs().max(self.corrected[j])).sum::<f64>();
+        let noise = |i: usize| NOISE * (value[i].abs() + terms(i));
+        // a gap that corrections cannot close depends on other rows, which also carry its force
+        let leaves = |i: usize| x[i] < 0.0 || left[i] > noise(i);
+        let stays = |i: usize| if x[i] == 0.0 { left[i] >= -noise(i) } else { leaves(i) };
+        (0..x.len()).map(|i| bounded[i] && stays(i)).collect()
+    }
+}
