@@ -1,11 +1,11 @@
-//! Corrections on a face with too many rows for dense factors: one sparse Cholesky factor of the island,
+//! Sparse Cholesky factors of an island with the rows of a face, for corrections and for an interior point method:
 //!
 //! ```text
 //! (K + B_F' W B_F) du = r + B_F' W g,   dx = W (B_F du - g),   W = 1 / max(C, c)
 //! ```
 //!
 //! for the residual loads r and gaps g. With W = 1/C this solves the face; a row that is stiffer than 1/c takes some corrections
-//! more.
+//! more. The interior point method has weights of its own for all rows.
 
 use std::sync::Arc;
 
