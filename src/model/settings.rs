@@ -165,6 +165,8 @@ impl Settings {
         let option = find(name)?;
         let Location::Str(field) = &option.field else { return Err(wrong_type(option)) };
         let field = field(self);
+        // hosts and problem files of version 0.2 may ask for a method that has been removed
+        let value = if (name, value) == ("method", "smalbe") { "proportioning" } else { value };
         if field.take(value.as_bytes()) {
             return Ok(());
         }
@@ -249,6 +251,14 @@ fn check(option: &OptionInfo, value: f64) -> Result<()> {
 mod tests {
     use super::*;
     use crate::error::Kind;
+
+    #[test]
+    fn a_method_that_is_gone_is_read_as_the_default() {
+        let mut settings = Settings::new();
+        settings.set_str("method", "paper-monotone").unwrap();
+        settings.set_str("method", "smalbe").unwrap();
+        assert_eq!(settings.get_str("method").unwrap(), "proportioning");
+    }
 
     #[test]
     fn every_option_starts_with_its_listed_default_inside_its_range() {
