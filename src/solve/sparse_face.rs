@@ -121,10 +121,9 @@ impl<'a> SparseFaces<'a> {
     /// None if the matrix of this face is not positive semidefinite.
     pub fn on(&'a self, rows: Vec<usize>) -> Result<Option<SparseFace<'a>>> {
         let mut weight = zeros(self.rows.rows(), WHAT)?;
-        let own = rows.iter().copied().filter(|&i| i < weight.len());
-        own.collect::<Vec<_>>()
-            .into_iter()
-            .for_each(|i| weight[i] = self.compliance[i].max(self.least[i]).recip());
+        for (i, weight) in weight.iter_mut().enumerate().filter(|(i, _)| rows.binary_search(i).is_ok()) {
+            *weight = self.compliance[i].max(self.least[i]).recip();
+        }
         let factor = self.factor(&weight)?;
         Ok(factor.map(|factor| SparseFace { faces: self, rows, weight, factor }))
     }

@@ -261,6 +261,22 @@ fn the_error_of_the_forces_on_a_body_is_estimated() {
     );
 }
 
+/// Two springs in a row, from the ground on, loaded at an unknown that a row holds: nothing deforms, and u is rounding.
+#[test]
+fn what_rounding_leaves_of_a_displacement_that_no_force_causes_is_nothing() {
+    let model = DenseModel {
+        parts: vec![chain(&[1.0], &[(0, 1.0)]).loaded(&[(0, 2.0)])],
+        equalities: vec![(vec![(0, 1.0)], 0.0, 0.0), (vec![(1, 1.0)], 0.0, 0.0)],
+        ..DenseModel::default()
+    };
+    let passes = |u: [f64; 2]| {
+        let answer = DenseAnswer { u: u.to_vec(), lambda: vec![], mu: vec![2.0, 0.0], tangential: vec![] };
+        model.certificate(&answer).passed()
+    };
+    assert!(passes([0.0; 2]) && passes([1e-17, -3e-17]));
+    assert!(!passes([0.0, 1e-12]) && !passes([1e-12, 0.0]));
+}
+
 /// A loaded spring at its obstacle, and a roller of two unknowns between it and a wall that just touches both: forces there that
 /// other solvers leave, and loads that Newton's method leaves, are none; larger ones have to balance.
 #[test]
