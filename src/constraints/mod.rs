@@ -206,11 +206,6 @@ impl RowSet {
         left.value()
     }
 
-    /// `lambda'C lambda`, twice the energy in the springs of the rows.
-    pub fn stored(&self, multipliers: &[f64]) -> f64 {
-        multipliers.iter().zip(&self.compliance).map(|(l, c)| c * l * l).sum()
-    }
-
     /// `max_j |b_ij|`
     pub fn largest_entry(&self, i: usize) -> f64 {
         self.matrix.row(i).fold(0.0, |most, (_, v)| most.max(v.abs()))

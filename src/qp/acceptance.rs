@@ -30,8 +30,9 @@ pub trait AcceptanceTest {
     fn has_better_data(&self) -> bool {
         false
     }
-    /// Corrects a solution that was not accepted with better data than A and b.
-    fn mended(&mut self, _: &Solution) -> Result<Mended> {
+    /// Corrects a solution that was not accepted with better data than A and b; with `inside` also from forces that depend on these
+    /// data alone, which need to be tried only once.
+    fn mended(&mut self, _: &Solution, _inside: bool) -> Result<Mended> {
         Ok(Mended::Failed)
     }
     /// The scale without rigid travel, at the last accepted point; none before, or if the test does not compute it.

@@ -27,7 +27,7 @@ pub use conjugate::MOST as KEPT;
 pub use face::{Direct, Face};
 pub use interior::{Interior, Inverse, Point, Stiffness};
 pub use nearest::{nearest_point, Nearest, Polyhedron};
-pub use proportioning::{minimise, not_held, weighted};
+pub use proportioning::{minimise, weighted};
 pub use restricted::{DirectOnRows, Judged, Restricted};
 
 use crate::error::Result;

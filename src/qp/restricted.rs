@@ -161,8 +161,8 @@ impl AcceptanceTest for Judged<'_> {
         self.whole.length()
     }
 
-    fn mended(&mut self, solution: &Solution) -> Result<Mended> {
-        Ok(match self.whole.mended(&self.on.whole(solution.clone()))? {
+    fn mended(&mut self, solution: &Solution, inside: bool) -> Result<Mended> {
+        Ok(match self.whole.mended(&self.on.whole(solution.clone()), inside)? {
             Mended::Accepted(mended) => self.on.part(mended).map_or(Mended::Failed, Mended::Accepted),
             Mended::Near(x) => Mended::Near(self.on.start(&x)),
             Mended::Failed => Mended::Failed,

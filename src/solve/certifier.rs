@@ -176,11 +176,11 @@ impl AcceptanceTest for Certifier<'_> {
         self.recovery.ready.whole.is_some()
     }
 
-    fn mended(&mut self, solution: &Solution) -> Result<Mended> {
+    fn mended(&mut self, solution: &Solution, inside: bool) -> Result<Mended> {
         let begun = Instant::now();
         let mut ending = self.ending(solution.clone())?;
         self.recovery.bring_to_rest(&mut ending, false)?;
-        let Finished { replaced, inside } = finish(&self.recovery, &mut ending)?;
+        let Finished { replaced, inside } = finish(&self.recovery, &mut ending, inside)?;
         self.spent += begun.elapsed();
         if !replaced && !ending.judgement.certificate.passed() {
             interrupt::check()?;

@@ -37,10 +37,10 @@ pub fn solve_dual(
         return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, steps);
     }
     let mut solution = minimise(qp, start, limits, judge, steps)?;
-    if let Some(x) = on_faces(&mut solution, means.direct, judge, steps)? {
+    if let Some(x) = on_faces(&mut solution, means.direct, judge, steps, true)? {
         steps.line("the method starts again from the forces of an interior point".to_owned())?;
         let again = minimise(qp, &x, limits, judge, steps).and_then(|mut again| {
-            on_faces(&mut again, means.direct, judge, steps)?;
+            on_faces(&mut again, means.direct, judge, steps, false)?;
             Ok(again)
         });
         return better(solution, again);
@@ -48,12 +48,14 @@ pub fn solve_dual(
     Ok(solution)
 }
 
-/// Corrects an incomplete solution on faces by the data of the host; if none of them has an answer, forces close to one.
+/// Corrects an incomplete solution on faces by the data of the host, with `inside` also from an interior point; if none of them has
+/// an answer, forces close to one.
 fn on_faces(
     solution: &mut Solution,
     direct: Direct,
     judge: &mut dyn AcceptanceTest,
     steps: &mut Steps,
+    inside: bool,
 ) -> Result<Option<Vec<f64>>> {
     let is_incomplete = gave_up(solution) || solution.verdict == Verdict::StepLimit;
     if !is_incomplete || direct.limit == 0 {
@@ -67,7 +69,7 @@ fn on_faces(
     };
     let after = solution.counts.steps();
     steps.line(format!("after {after} steps {why}: direct solution on active sets follows"))?;
-    match judge.mended(solution) {
+    match judge.mended(solution, inside) {
         Ok(Mended::Accepted(mended)) => *solution = mended,
         Ok(Mended::Near(x)) => return Ok(Some(x)),
         Ok(Mended::Failed) => {}
@@ -156,7 +158,7 @@ mod tests {
                 let stops = Stops::never();
                 let mut steps = Steps::new(0, 1.0, qp.bounded, stops, &mut lines);
                 let mut done = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
-                let near = on_faces(&mut done, Direct { limit, ..direct }, judge, &mut steps);
+                let near = on_faces(&mut done, Direct { limit, ..direct }, judge, &mut steps, true);
                 assert!(near.unwrap().is_none());
                 assert_eq!(done.verdict, verdict);
                 assert_eq!(done.x[0] == 2.0, verdict == Verdict::Solved);

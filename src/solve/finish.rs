@@ -1,6 +1,8 @@
 //! Option `finish`: after a solve, the residuals of the host's data correct forces and displacements together, each time
 //! on the rows that these data show to be in contact, until only rounding is left.
 
+use std::rc::Rc;
+
 use crate::certificate::Certificate;
 use crate::error::{Kind, Result};
 use crate::model::{FinishBy, Method, Settings};
@@ -53,15 +55,17 @@ pub struct Finished {
 
 /// Corrects the answer. If the host, the time limit or a lack of memory stops the finish, `ending` stays as it is. Nothing is
 /// corrected where motions count as undetermined although rows of the host resist them a little: these rows would move bodies
-/// along them.
-pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<Finished> {
+/// along them. `inside`: an answer that does not pass may be sought from an interior point on.
+pub fn finish(recovery: &Recovery, ending: &mut Ending, inside: bool) -> Result<Finished> {
     if recovery.scaled.cleaned.is_some() {
         return Ok(Finished::default());
     }
     let negative = NegativeMotions::of(recovery.ready);
     let delicate = is_delicate(recovery, ending);
-    let mut finish = Finish { recovery, ending, delicate, negative, done: Finished::default() };
-    match finish.run() {
+    let passed = ending.judgement.certificate.passed();
+    let mut finish =
+        Finish { recovery, ending, delicate, passed, negative, sparse: None, done: Finished::default() };
+    match finish.run(inside) {
         Ok(()) => {}
         Err(error) if error.kind == Kind::Memory => {}
         Err(error) => drop(Verdict::of_refusal(error)?),
@@ -78,25 +82,29 @@ struct Finish<'a, 'b> {
     ending: &'b mut Ending,
     /// Rounding of K along motions no larger than the deformation matters, and so do errors below those of the certificate.
     delicate: bool,
+    /// The given answer passes.
+    passed: bool,
     negative: NegativeMotions,
+    /// Sparse factors of the island, if already asked for.
+    sparse: Option<Rc<SparseFaces<'a>>>,
     done: Finished,
 }
 
-impl Finish<'_, '_> {
+impl<'a> Finish<'a, '_> {
     /// Active sets from that of the answer on; if none of them has an answer that passes, from that of an interior point on, by
     /// dense factors, then by sparse ones.
-    fn run(&mut self) -> Result<()> {
-        // a factor of the whole island costs as much as its setup: only an answer that does not pass is worth it
-        let sparse = if self.passes() { None } else { SparseFaces::of(self.recovery)? };
+    fn run(&mut self, inside: bool) -> Result<()> {
         let Faces { qp, direct } = &self.recovery.faces;
         let point = SplitPoint::of(self.recovery, self.ending, if self.delicate { 1.0 } else { FAR })?;
-        self.follow(qp.at_bound(&self.ending.solution.x), point, (direct.limit, sparse.as_ref()))?;
-        let Some(faces) = sparse.filter(|_| !self.passes()) else { return Ok(()) };
+        self.follow(qp.at_bound(&self.ending.solution.x), point, direct.limit)?;
+        if self.passes() || !inside {
+            return Ok(());
+        }
+        let Some(faces) = self.sparse()? else { return Ok(()) };
         let Some((active, inside)) = faces.inside(self.recovery)? else { return Ok(()) };
         for dense in [direct.limit, 0] {
             if !self.passes() {
-                let point = SplitPoint::inside(self.recovery, &inside);
-                self.follow(active.clone(), point, (dense, Some(&faces)))?;
+                self.follow(active.clone(), SplitPoint::inside(self.recovery, &inside), dense)?;
             }
         }
         self.done.inside = (!self.passes()).then_some(inside.force);
@@ -107,21 +115,24 @@ impl Finish<'_, '_> {
         self.ending.judgement.certificate.passed()
     }
 
+    /// A factor of the whole island costs as much as its setup: only an answer that does not pass is worth it.
+    fn sparse(&mut self) -> Result<Option<Rc<SparseFaces<'a>>>> {
+        if self.sparse.is_none() && !self.passed {
+            self.sparse = SparseFaces::of(self.recovery)?.map(Rc::new);
+        }
+        Ok(self.sparse.clone())
+    }
+
     /// Active sets one after the other, until one confirms itself or occurs again; up to `dense` rows and modes by dense factors.
-    fn follow(
-        &mut self,
-        mut active: Vec<bool>,
-        mut point: SplitPoint,
-        (dense, sparse): (usize, Option<&SparseFaces>),
-    ) -> Result<()> {
+    fn follow(&mut self, mut active: Vec<bool>, mut point: SplitPoint, dense: usize) -> Result<()> {
         let Faces { qp, direct } = &self.recovery.faces;
         let mut visited: Vec<Vec<bool>> = Vec::new();
         while visited.len() < FACES && !visited.contains(&active) {
             point.hold(&active);
             let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
             if rows.len() + point.alpha.len() > dense {
-                let face = sparse.map(|faces| faces.on(rows)).transpose()?.flatten();
-                let Some(face) = face else { break };
+                let Some(faces) = self.sparse()? else { break };
+                let Some(face) = faces.on(rows)? else { break };
                 self.correct(&mut point, FaceSolver::Sparse(&face))?;
             } else {
                 let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
@@ -198,7 +209,7 @@ mod tests {
             let recovery = &judge.recovery;
             for x in [[2.0 * (1.0 + 1e-6), 0.0], [2.0 * (1.0 + 1e-6), 1e-12]] {
                 let mut ending = recovery.ending(Solution { x: x.to_vec(), ..solved.clone() }).unwrap();
-                assert!(finish(recovery, &mut ending).unwrap().replaced, "{x:?}");
+                assert!(finish(recovery, &mut ending, true).unwrap().replaced, "{x:?}");
                 assert_eq!(ending.solution.x, [2.0, 0.0]);
                 assert_eq!(
                     (ending.recovered.u.as_slice(), ending.recovered.lambda.as_slice()),
@@ -224,7 +235,9 @@ mod tests {
                     recovery,
                     ending: &mut ending,
                     delicate: true,
+                    passed: true,
                     negative,
+                    sparse: None,
                     done: Finished::default(),
                 };
                 finish.correct(&mut point, FaceSolver::Dense(&face)).unwrap();

@@ -191,8 +191,9 @@ fn attempt(
         return Ok(Tried::Leaves { x: ending.solution.x });
     }
     let is_solved = ending.solution.verdict == Verdict::Solved;
-    let finished =
-        is_solved && is_to_finish(settings, recovery, &ending) && finish(recovery, &mut ending)?.replaced;
+    let finished = is_solved
+        && is_to_finish(settings, recovery, &ending)
+        && finish(recovery, &mut ending, false)?.replaced;
     let slide = if finished { interrupt::never(|| recovery.slides(&ending))? } else { slides }.worst();
     let mut outcome = outcome(case, dual, &ending.solution)?;
     if outcome == Outcome::Solved && !ending.judgement.certificate.passed() {

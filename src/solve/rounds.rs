@@ -72,7 +72,7 @@ pub fn solve_in_rounds<'a>(
         };
         step = match next {
             Ok(Next::Step(next)) => next,
-            Ok(Next::Mend(next)) => match judge.mended(&solution) {
+            Ok(Next::Mend(next)) => match judge.mended(&solution, true) {
                 Ok(Mended::Accepted(mended)) => return Ok(mended),
                 Ok(_) => next,
                 Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),

@@ -35,6 +35,8 @@ pub struct SparseFaces<'a> {
     /// B, the rows of the dual.
     rows: &'a Csr,
     compliance: &'a [f64],
+    /// D / 2^p
+    metric: &'a [f64],
     /// c
     least: Vec<f64>,
     gram: Gram,
@@ -46,7 +48,7 @@ pub struct SparseFaces<'a> {
 /// The factor of a face.
 pub struct SparseFace<'a> {
     faces: &'a SparseFaces<'a>,
-    pub rows: Vec<usize>,
+    rows: Vec<usize>,
     /// W
     weight: Vec<f64>,
     factor: Factor,
@@ -67,16 +69,10 @@ impl Inverse for Factor {
     }
 }
 
-/// K of the island, for the interior point method.
-struct OfIsland<'a> {
-    faces: &'a SparseFaces<'a>,
-    metric: &'a [f64],
-}
-
-impl Stiffness for OfIsland<'_> {
+impl Stiffness for &SparseFaces<'_> {
     fn subtract(&self, a: &[f64], left: &mut [f64]) -> Result<()> {
         let mut image = zeros(a.len(), WHAT)?;
-        self.faces.k.mul(a, &mut image);
+        self.k.mul(a, &mut image);
         axpy(-1.0, &image, left);
         Ok(())
     }
@@ -86,7 +82,7 @@ impl Stiffness for OfIsland<'_> {
     }
 
     fn with_rows(&mut self, weights: &[f64]) -> Result<Option<Box<dyn Inverse + '_>>> {
-        Ok(self.faces.factor(weights)?.map(|factor| Box::new(factor) as _))
+        Ok(self.factor(weights)?.map(|factor| Box::new(factor) as _))
     }
 }
 
@@ -94,7 +90,7 @@ impl<'a> SparseFaces<'a> {
     /// None if some K is not given by its entries, or rows are wide.
     pub fn of(recovery: &Recovery<'a>) -> Result<Option<Self>> {
         let own = &recovery.ready.rows;
-        let (rows, metric) = (&own.matrix, &own.metric);
+        let (rows, metric) = (&own.matrix, &own.metric[..]);
         let wide = |i: usize| rows.ptr[i + 1] - rows.ptr[i] > WIDE;
         if (0..rows.rows()).any(wide) {
             return Ok(None);
@@ -115,15 +111,15 @@ impl<'a> SparseFaces<'a> {
         });
         let analysis = Arc::new(Analysis::new(&k, &vec![false; metric.len()])?);
         let (least, compliance) = (least.collect(), &own.compliance[..]);
-        Ok(Some(Self { rows, compliance, least, gram, k, analysis }))
+        Ok(Some(Self { rows, compliance, metric, least, gram, k, analysis }))
     }
 
     /// None if the matrix of this face is not positive semidefinite.
-    pub fn on(&'a self, rows: Vec<usize>) -> Result<Option<SparseFace<'a>>> {
+    pub fn on(&self, mut rows: Vec<usize>) -> Result<Option<SparseFace<'_>>> {
         let mut weight = zeros(self.rows.rows(), WHAT)?;
-        for (i, weight) in weight.iter_mut().enumerate().filter(|(i, _)| rows.binary_search(i).is_ok()) {
-            *weight = self.compliance[i].max(self.least[i]).recip();
-        }
+        // springs of bodies are a part of K
+        rows.retain(|&i| i < weight.len());
+        rows.iter().for_each(|&i| weight[i] = self.compliance[i].max(self.least[i]).recip());
         let factor = self.factor(&weight)?;
         Ok(factor.map(|factor| SparseFace { faces: self, rows, weight, factor }))
     }
@@ -142,7 +138,7 @@ impl<'a> SparseFaces<'a> {
         let mut load = copied(e, WHAT)?;
         self.rows.mul_transposed_add(1.0, &pull, &mut load);
         let motion = factor.solve(&load)?;
-        let mut stiffness = OfIsland { faces: self, metric: &recovery.ready.rows.metric };
+        let mut stiffness = self;
         let mean = stiffness.size(e).powi(2) / m as f64;
         let least: Vec<f64> =
             self.compliance.iter().zip(&self.least).map(|(c, least)| c.max(CLOSED * least)).collect();
@@ -186,11 +182,10 @@ impl SparseFace<'_> {
     /// du, and dx over all rows, for residual loads and gaps in units of 2^p.
     pub fn solve(&self, mut load: Vec<f64>, gaps: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let mut pull = zeros(gaps.len(), WHAT)?;
-        let rows = || self.rows.iter().copied().filter(|&i| i < self.weight.len());
-        rows().for_each(|i| pull[i] = self.weight[i] * gaps[i]);
+        self.rows.iter().for_each(|&i| pull[i] = self.weight[i] * gaps[i]);
         self.faces.rows.mul_transposed_add(1.0, &pull[..self.weight.len()], &mut load);
         let moved = self.factor.solve(&load)?;
-        for i in rows() {
+        for &i in &self.rows {
             pull[i] = self.weight[i] * (self.faces.rows.row_dot(i, &moved) - gaps[i]);
         }
         Ok((moved, pull))

@@ -79,17 +79,6 @@ impl PivotedCholesky {
         Self { rank: self.full_rank, ..self }
     }
 
-    /// V, rank x n, with `A = V'V` up to the pivots left out.
-    pub fn root(&self) -> Result<Matrix> {
-        let mut root = Matrix::zeros(self.rank, self.order.len())?;
-        for (k, &i) in self.order.iter().enumerate() {
-            for j in 0..self.rank.min(k + 1) {
-                root.set(j, i, self.factor.get(k, j) / self.inverse_root[i]);
-            }
-        }
-        Ok(root)
-    }
-
     /// A solution of `A X = B` (n x k) if there is one: the one that is 0 on the rows beyond the rank.
     pub fn solve(&self, b: &Matrix) -> Result<Matrix> {
         let scaled = |i: usize, j: usize| b.get(i, j) * self.inverse_root[i];

@@ -28,7 +28,7 @@ use iterate::Iterate;
 use steps::Step;
 
 pub use balance::weighted;
-pub use stop::Stop;
+use stop::Stop;
 
 /// If no x balances e, a residual below this part of e is rounding of e.
 const ROUNDING: f64 = 1e-12;
@@ -73,16 +73,6 @@ pub fn minimise(
     }
     directions.map_or(Ok(()), |directions| it.go_on_with(directions))?;
     proportioning(it, limits, judge, observer)
-}
-
-/// The verdict if no x balances e, for a method that does not test this.
-pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
-    let mut coarse = Coarse::of(qp)?;
-    if interrupt::part(FIRST_POINT, || first_point(qp, &mut coarse, start))?.is_some() {
-        return Ok(None);
-    }
-    let found = interrupt::part(FIRST_POINT, || balance(qp, &mut coarse))?;
-    Ok((found.margin > ROUNDING).then(|| infeasible(qp, &coarse, found)))
 }
 
 fn infeasible(qp: &Qp, coarse: &Coarse, found: Balance) -> Solution {
