@@ -15,7 +15,7 @@ use crate::body::misfit::Misfit;
 use crate::body::null_space::{exact, largest, refuse_overflow, Verified};
 use crate::body::part::{End, Soft};
 use crate::body::pilots::Pilots;
-use crate::body::probe::{known_to, probe, Factor, MOST_ROUNDING, SINGULAR};
+use crate::body::probe::{known_to, probe, sharpened, Factor, MOST_ROUNDING, SINGULAR};
 use crate::body::soft::{are_resisted, known_to_entries, soft_motions};
 use crate::body::spectrum::{cut, may_be_weak, measured, to_measure};
 use crate::error::{Error, Kind, Result};
@@ -257,7 +257,10 @@ impl Search {
         let vectors = self.resisted_evenly(&factor, vectors)?;
         let tolerance = if soft.weak > 0 { f64::INFINITY } else { self.tolerance.max(soft.rounding) };
         let Verified { basis, .. } = exact(&self.k, &vectors, tolerance)?;
-        let (null_space, stiffness) = self.resisted_softly(&factor, &soft, basis)?;
+        let (mut null_space, stiffness) = self.resisted_softly(&factor, &soft, basis)?;
+        if stiffness.is_empty() {
+            null_space = sharpened(&self.k, &null_space)?.unwrap_or(null_space);
+        }
         let softness = probe(&factor, &self.k, &fixing, fixing.len())?;
         let error = match stiffness.is_empty() {
             true => known_to(&factor, &self.k, &null_space)?,

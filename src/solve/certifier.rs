@@ -110,7 +110,7 @@ impl<'a> Certifier<'a> {
         let mut alpha_at_rest = None;
         if !judgement.certificate.passed() {
             // a large motion that nothing resists may hide the other errors
-            let rested = recovery.at_rest(&recovered, x, &deformed, false)?;
+            let rested = recovery.at_rest(&recovered, x, &deformed)?;
             let at_rest = rested.as_ref().map(|(rested, _)| recovery.judged(rested)).transpose()?;
             match (rested, at_rest.filter(|at_rest| at_rest.certificate.passed())) {
                 (Some((rested, amplitudes)), Some(at_rest)) => {
@@ -179,7 +179,7 @@ impl AcceptanceTest for Certifier<'_> {
     fn mended(&mut self, solution: &Solution, inside: bool) -> Result<Mended> {
         let begun = Instant::now();
         let mut ending = self.ending(solution.clone())?;
-        self.recovery.bring_to_rest(&mut ending, false)?;
+        self.recovery.bring_to_rest(&mut ending)?;
         let Finished { replaced, inside } = finish(&self.recovery, &mut ending, inside)?;
         self.spent += begun.elapsed();
         if !replaced && !ending.judgement.certificate.passed() {

@@ -72,7 +72,7 @@ pub fn finish(recovery: &Recovery, ending: &mut Ending, inside: bool) -> Result<
     }
     let Finish { ending, done, .. } = finish;
     if done.replaced {
-        recovery.bring_to_rest(ending, true)?;
+        recovery.bring_to_rest(ending)?;
     }
     Ok(done)
 }

@@ -175,7 +175,7 @@ fn attempt(
     // an accepted answer is returned with its displacements and its certificate
     let mut ending = interrupt::never(|| judge.ending(solution))?;
     let recovery = &judge.recovery;
-    recovery.bring_to_rest(&mut ending, false)?;
+    recovery.bring_to_rest(&mut ending)?;
     let slides = interrupt::never(|| recovery.slides(&ending))?;
     let mut accuracy = case.island().accuracy;
     let goes_on = !ending.solution.verdict.is_stop();

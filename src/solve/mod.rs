@@ -22,7 +22,6 @@ mod presolve;
 mod recovery;
 mod report;
 mod rest;
-mod rigid;
 mod rounds;
 mod scaled;
 mod slides;

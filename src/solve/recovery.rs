@@ -1,20 +1,17 @@
 //! From a point of the dual problem of one island to the answer in the units of the host (17), the residuals of loads and
 //! gaps, and the certificate.
 
-use std::cell::RefCell;
-
-use crate::certificate::{certify, BodyData, Candidate, Data, Judgement};
+use crate::certificate::{certify, BodyData, Candidate, Data, Judgement, NOISE};
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::model::Model;
 use crate::platform::interrupt;
-use crate::platform::memory::copied;
+use crate::platform::memory::{copied, zeros};
 use crate::qp::{Direct, Qp, Solution};
 use crate::setup::Ready;
 use crate::solve::case::Case;
-use crate::solve::rigid::{unresisted, Cleaner};
 use crate::solve::scaled::Scaled;
 
 /// Displacements and multipliers in the units of the host.
@@ -56,8 +53,6 @@ pub struct Recovery<'a> {
     pub data: Data<'a>,
     pub threads: usize,
     pub faces: Faces<'a>,
-    /// Cleaners of the rigid motions of the bodies, if already made.
-    cleaners: RefCell<Vec<Option<Cleaner>>>,
     /// K+ of some body amplifies rounding by more than 1 / `SOFT`.
     pub soft: bool,
     /// Some node has friction: slips distinguish one answer from another.
@@ -76,7 +71,6 @@ impl<'a> Recovery<'a> {
         if let Some(load) = scaled.unheld.as_ref().and_then(|taken| taken.load.as_ref()) {
             data.bodies.iter_mut().for_each(|body| body.load = Some(&load[body.range()]));
         }
-        let cleaners = RefCell::new(data.bodies.iter().map(|_| None).collect());
         let is_soft = |p: &usize| {
             let inverse = case.prepared.inverse(case.model, *p);
             inverse.is_some_and(|inverse| inverse.kplus.softness < SOFT)
@@ -89,7 +83,6 @@ impl<'a> Recovery<'a> {
             data,
             threads: case.threads(),
             faces,
-            cleaners,
             soft,
             friction: case.has_friction(),
         })
@@ -172,16 +165,15 @@ impl<'a> Recovery<'a> {
         left
     }
 
-    /// Cleans a motion where it is larger than v by a factor. Per body: whether it is, and K resists it by rounding alone.
-    pub fn clean(&self, motion: &mut [f64], v: &[f64], factor: f64) -> Result<Vec<bool>> {
+    /// Per body: whether a motion is larger than v by a factor, and K resists it by rounding alone.
+    pub fn travels(&self, motion: &[f64], v: &[f64], factor: f64) -> Result<Vec<bool>> {
         let length =
             |body: &BodyData, u: &[f64]| weighted_norm(u, |i| self.ready.rows.metric[body.start + i]);
-        let mut cleaners = self.cleaners.borrow_mut();
-        let clean = |(body, cleaner): (&BodyData, &mut Option<Cleaner>)| {
-            let (motion, v) = (&mut motion[body.range()], &v[body.range()]);
-            Ok(length(body, motion) > factor * length(body, v) && unresisted(body, motion, cleaner)?)
+        let travels = |body: &BodyData| {
+            let (motion, v) = (&motion[body.range()], &v[body.range()]);
+            Ok(length(body, motion) > factor * length(body, v) && is_unresisted(body, motion)?)
         };
-        self.data.bodies.iter().zip(cleaners.iter_mut()).map(clean).collect()
+        self.data.bodies.iter().map(travels).collect()
     }
 
     /// R'D u of a body.
@@ -223,6 +215,13 @@ impl<'a> Recovery<'a> {
         let judgement = self.judged(&recovered)?;
         Ok(Ending { solution, deformed, recovered, judgement })
     }
+}
+
+/// `|K w|_j <= 64 eps (|K||w|)_j`
+fn is_unresisted(body: &BodyData, w: &[f64]) -> Result<bool> {
+    let (mut image, mut terms) = (zeros(w.len(), "a motion")?, zeros(w.len(), "a motion")?);
+    body.stiffness.mul_with_terms(w, &mut image, &mut terms)?;
+    Ok(image.iter().zip(&terms).all(|(image, terms)| image.abs() <= NOISE * terms))
 }
 
 #[cfg(test)]

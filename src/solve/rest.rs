@@ -13,13 +13,13 @@ use crate::solve::travel::{travel, Moving, OpenMotions, Shift};
 
 impl<'a> Recovery<'a> {
     /// Replaces the answer by that of least travel among the answers that differ by motions which nothing resists, unless
-    /// only the original answer passes. `exact`: errors of R are removed from the motions. If the host or the time limit
-    /// stops it, the answer is unchanged and the verdict names the reason.
-    pub fn bring_to_rest(&self, ending: &mut Ending, exact: bool) -> Result<()> {
+    /// only the original answer passes. If the host or the time limit stops it, the answer is unchanged and the verdict
+    /// names the reason.
+    pub fn bring_to_rest(&self, ending: &mut Ending) -> Result<()> {
         if ending.solution.undetermined == 0 {
             return Ok(());
         }
-        let at_rest = self.at_rest(&ending.recovered, &ending.solution.x, &ending.deformed, exact);
+        let at_rest = self.at_rest(&ending.recovered, &ending.solution.x, &ending.deformed);
         let judged = at_rest.and_then(|at_rest| {
             let Some((recovered, alpha)) = at_rest else { return Ok(None) };
             let judgement = self.judged(&recovered)?;
@@ -47,7 +47,6 @@ impl<'a> Recovery<'a> {
         answer: &Recovered,
         x: &[f64],
         deformed: &[f64],
-        exact: bool,
     ) -> Result<Option<(Recovered, Vec<f64>)>> {
         if self.friction {
             return Ok(None);
@@ -66,14 +65,7 @@ impl<'a> Recovery<'a> {
         let springs = open.len() - dual.springs..;
         open[springs.clone()].copy_from_slice(&x[springs]);
         let mut alpha = dual.balanced(x, &face.fitted(&open)?);
-        let add = |mut motion: Vec<f64>, u: &mut [f64]| -> Result<()> {
-            if exact {
-                self.clean(&mut motion, u, 1.0)?;
-            }
-            axpy(1.0, &motion, u);
-            Ok(())
-        };
-        add(dual.rigid_motion(&alpha, u.len()), &mut u)?;
+        axpy(1.0, &dual.rigid_motion(&alpha, u.len()), &mut u);
         let mut forces = answer.lambda.clone();
         for (i, member) in self.ready.rows.scaling.grouping.member[..forces.len()].iter().enumerate() {
             if member.is_some_and(|(group, _)| held[group]) {
@@ -82,7 +74,7 @@ impl<'a> Recovery<'a> {
         }
         let way = interrupt::part("least travel", || self.way_to_rest(&u, &forces, free))?;
         let Some(change) = way else { return Ok(None) };
-        add(change.u, &mut u)?;
+        axpy(1.0, &change.u, &mut u);
         for k in 0..self.data.bodies.len() {
             let modes = dual.modes_of(k);
             axpy(dual.size_of(k), &change.amplitudes[modes.clone()], &mut alpha[modes]);

@@ -72,9 +72,8 @@ impl SplitPoint {
     /// Adds R a and returns R a.
     fn turn(&mut self, recovery: &Recovery, a: &[f64]) -> Result<Vec<f64>> {
         let dual = &recovery.ready.dual;
-        let whole = dual.rigid_motion(a, self.v.len());
-        let mut motion = whole.clone();
-        let apart = recovery.clean(&mut motion, &self.v.values(), self.apart)?;
+        let motion = dual.rigid_motion(a, self.v.len());
+        let apart = recovery.travels(&motion, &self.v.values(), self.apart)?;
         for (k, (body, apart)) in recovery.data.bodies.iter().zip(apart).enumerate() {
             let to = if apart { &mut self.w } else { &mut self.v };
             body.range().for_each(|j| to.add(j, motion[j]));
@@ -84,7 +83,7 @@ impl SplitPoint {
             }
         }
         axpy(1.0, a, &mut self.alpha);
-        Ok(whole)
+        Ok(motion)
     }
 
     /// u - R alpha

@@ -121,6 +121,14 @@ fn refusal(case: &Hard, error: &Error) -> End {
     End { verdict, name: format!("{:?}: {error}{figures}", error.kind) }
 }
 
+/// Rows that nearly depend on each other resist a motion by less than 1e-4 of their terms, and a body travels 1e4 times as far as it
+/// deforms: that is to be told.
+fn slides(case: &Hard, found: &Answer) -> bool {
+    let yardstick = yardstick(&case.deck, found, case.undetermined > 0, 0.0);
+    let travels = |p: usize| yardstick.norm(p, &found.u, 1) > 1e4 * yardstick.sizes[p].deformation;
+    case.kinds.contains(&hard::Kind::Near) && (0..case.deck.bodies.len()).any(travels)
+}
+
 pub fn judge(case: &Hard, ended: &std::result::Result<Outcome, Error>, found: Option<&Answer>) -> End {
     let outcome = match ended {
         Err(error) => return refusal(case, error),
@@ -129,7 +137,9 @@ pub fn judge(case: &Hard, ended: &std::result::Result<Outcome, Error>, found: Op
     let wrong = found.and_then(|found| error(case, found)).filter(|error| *error > 1.0);
     let due = match outcome {
         Outcome::Solved => case.ends.solved,
-        Outcome::Marginal => case.ends.marginal && case.ends != Ends::ANY,
+        Outcome::Marginal => {
+            case.ends.marginal && case.ends != Ends::ANY || found.is_some_and(|found| slides(case, found))
+        }
         _ => false,
     };
     let beyond = |found: &Answer| proof::travel(&case.deck, &found.u) > proof::reach(&case.deck);
