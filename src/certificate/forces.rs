@@ -84,15 +84,13 @@ impl Forces {
         }
     }
 
-    /// Rounding of the forces on a body that a row touches, if they deform it no more than that or if there is friction, and of
-    /// those of the island on a body without load and forces, (force x length)^1/2.
+    /// Rounding of the forces on a body that a row touches, if they deform it no more than that, and of those of the island on
+    /// a body without load and forces, (force x length)^1/2.
     pub fn rounding_at(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
         let idle = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0), NOISE);
         let of = |p: usize| {
             let rounding = NOISE * self.terms[p];
-            // answers with friction are not finished: what cancels there is lost
-            let is_lost = self.strains[p] <= rounding || !field.data.nodes.is_empty();
-            idle(p).max(if is_lost { rounding } else { 0.0 })
+            idle(p).max(if self.strains[p] <= rounding { rounding } else { 0.0 })
         };
         field.touched(field.rows(kind), i).map(of).fold(0.0, f64::max) / field.unit.sqrt()
     }

@@ -96,6 +96,9 @@ impl<'a> Finish<'a, '_> {
     fn run(&mut self, inside: bool) -> Result<()> {
         let Faces { qp, direct } = &self.recovery.faces;
         let point = SplitPoint::of(self.recovery, self.ending, if self.delicate { 1.0 } else { FAR })?;
+        if self.recovery.friction {
+            return self.follow_friction(point);
+        }
         self.follow(qp.at_bound(&self.ending.solution.x), point, direct.limit)?;
         if self.passes() || !inside {
             return Ok(());
@@ -148,6 +151,22 @@ impl<'a> Finish<'a, '_> {
                 break;
             }
             visited.push(std::mem::replace(&mut active, point.active(self.recovery)));
+        }
+        Ok(())
+    }
+
+    /// Newton steps of the laws of friction, until the states are known and only rounding is left.
+    fn follow_friction(&mut self, mut point: SplitPoint) -> Result<()> {
+        let (mut last, mut before) = (f64::INFINITY, Vec::new());
+        for _ in 0..FACES {
+            interrupt::check()?;
+            let Some((size, states)) = point.step_with_friction(self.recovery)? else { break };
+            self.ending.solution.counts.direct += 1;
+            self.keep(&point, 0)?;
+            if states == before && !(size < 0.5 * last) {
+                break;
+            }
+            (last, before) = (size, states);
         }
         Ok(())
     }

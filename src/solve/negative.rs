@@ -16,7 +16,6 @@
 
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::vector::{axpy, dot, norm, NOISE};
-use crate::linalg::Matrix;
 use crate::qp::{Qp, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::fallback::MethodOptions;
@@ -49,7 +48,6 @@ pub struct Step {
 
 /// An answer of a round.
 struct Round<'a> {
-    b: Vec<f64>,
     x: Vec<f64>,
     alpha: Vec<f64>,
     held: Vec<bool>,
@@ -63,9 +61,6 @@ struct Round<'a> {
     is_rough: bool,
     /// None if the face is too large for dense factors.
     feedback: Option<Feedback<'a>>,
-    /// With friction alone: `(I - P)^-1` as far as this and earlier rounds on this face show it: P of `feedback` does not know that
-    /// forces at their bounds follow normal forces and slips.
-    inverse: Option<Matrix>,
 }
 
 /// What the rounds so far have found.
@@ -107,7 +102,7 @@ impl Known<'_> {
     /// An accepted answer must also have settled amplitudes.
     pub fn is_strict(&self) -> bool {
         match &self.last {
-            Some(Round { feedback: Some(_), inverse: None, .. }) => self.same < STRICT,
+            Some(Round { feedback: Some(_), .. }) => self.same < STRICT,
             Some(_) => self.rounds < STRICT_ALONE,
             None => true,
         }
@@ -130,13 +125,10 @@ impl<'a> Search<'a, '_> {
         found: (&Solution, Vec<bool>),
         (unsettled, is_rough): (bool, bool),
     ) -> Result<Next> {
-        let mut round = Round { is_rough, ..self.round(step, found)? };
+        let round = Round { is_rough, ..self.round(step, found)? };
         known.rounds += 1;
         let is_same = known.last.as_ref().is_some_and(|last| last.held == round.held);
         known.same = if is_same { known.same + 1 } else { 0 };
-        if self.recovery.friction {
-            round.inverse = Some(self.inverse(&round, known.last.as_ref().filter(|_| is_same))?);
-        }
         let falling = self.falling(&round, known.last.as_ref().filter(|_| is_same))?;
         match &falling {
             Some((motion, rate)) if !unsettled => return Err(indefinite(self.case, &motion.v, *rate)?),
@@ -154,9 +146,22 @@ impl<'a> Search<'a, '_> {
             Some((motion, rate)) => self.along(&round, &motion, rate)?,
             None => self.settled(&round)?,
         };
-        let is_to_mend = next.is_trial && known.same == MENDED && !self.recovery.friction;
+        let is_to_mend = next.is_trial && (known.same == MENDED || self.recovery.friction);
         known.last = Some(round);
         Ok(if is_to_mend { Next::Mend(next) } else { Next::Step(next) })
+    }
+
+    /// Whether the energy falls along no motion that keeps the closed rows of a corrected answer closed. Without friction its rows are
+    /// those of the rounds before.
+    pub fn is_minimum(&self, step: &Step, solution: &Solution) -> Result<bool> {
+        if !self.recovery.friction {
+            return Ok(true);
+        }
+        let held = self
+            .recovery
+            .held_with_friction(&self.displacements(&solution.x, &solution.alpha)?, &solution.x)?;
+        let round = self.round(step, (solution, held))?;
+        Ok(self.falling(&round, None)?.is_none())
     }
 
     /// What follows a round without an answer: no forces balance its load if the energy falls without end.
@@ -197,29 +202,6 @@ impl<'a> Search<'a, '_> {
         Ok(motion.falls_beside_friction(self.recovery)?.then_some(motion))
     }
 
-    /// `(I - P)^-1` of a round with friction; `last` had the same face: then the difference of both rounds corrects it
-    /// (Broyden).
-    fn inverse(&self, round: &Round, last: Option<&Round>) -> Result<Matrix> {
-        let d = self.negative.modes.len();
-        let mut inverse = Matrix::from_fn(d, d, |i, j| f64::from(i == j))?;
-        if let Some((last, known)) = last.and_then(|last| Some((last, last.inverse.as_ref()?))) {
-            inverse.data.copy_from_slice(&known.data);
-            let (mut moved, fell) = (minus(&round.b, &last.b), minus(&last.change, &round.change));
-            let along = inverse.mul_transposed(&moved);
-            let slope = dot(&along, &fell);
-            inverse.mul_add(-1.0, &fell, &mut moved);
-            if slope != 0.0 {
-                (0..d).for_each(|j| axpy(along[j] / slope, &moved, inverse.col_mut(j)));
-            }
-        } else if let Some(feedback) = round.feedback.as_ref().filter(|feedback| feedback.rate() < 1.0) {
-            for j in 0..d {
-                let unit: Vec<f64> = (0..d).map(|i| f64::from(i == j)).collect();
-                inverse.col_mut(j).copy_from_slice(&feedback.settled(&unit, &unit));
-            }
-        }
-        Ok(inverse)
-    }
-
     fn round(&self, step: &Step, (solution, held): (&Solution, Vec<bool>)) -> Result<Round<'a>> {
         let Solution { x, alpha, .. } = solution;
         let next: Vec<f64> = self.negative.forced(alpha);
@@ -235,8 +217,6 @@ impl<'a> Search<'a, '_> {
         let terms = parts.iter().map(|part| part.abs()).sum::<f64>();
         let feedback = Feedback::of(self.means.direct, self.qp, &held, self.negative)?;
         Ok(Round {
-            inverse: None,
-            b: step.b.clone(),
             x: x.clone(),
             alpha: alpha.clone(),
             held,
@@ -281,7 +261,7 @@ impl<'a> Search<'a, '_> {
 
     /// The next step: along a motion on which the energy falls, up to the row that stops it.
     fn along(&self, round: &Round, motion: &Sliding, rate: f64) -> Result<Step> {
-        let reach = motion.reach(self.recovery, &self.displacements(round)?, &round.held);
+        let reach = motion.reach(self.recovery, &self.displacements(&round.x, &round.alpha)?, &round.held);
         if reach.is_infinite() {
             return Err(indefinite(self.case, &motion.v, rate)?);
         }
@@ -293,11 +273,6 @@ impl<'a> Search<'a, '_> {
         let Some(feedback) = round.feedback.as_ref().filter(|feedback| feedback.rate() < 1.0) else {
             return Ok(Step { b: round.next.clone(), x: round.x.clone(), is_trial: false });
         };
-        if let Some(inverse) = &round.inverse {
-            let mut b = round.b.clone();
-            inverse.mul_add(1.0, &round.change, &mut b);
-            return Ok(Step { b, x: round.x.clone(), is_trial: true });
-        }
         let b = feedback.settled(&round.next, &round.change);
         let (x, _) = feedback.point(self.qp, &self.negative.resultants(self.qp.e, &b))?;
         let x = (0..x.len()).map(|i| if self.qp.bounded[i] { x[i].max(0.0) } else { x[i] }).collect();
@@ -319,7 +294,7 @@ impl<'a> Search<'a, '_> {
         axpy(-1.0, &round.x, &mut x);
         axpy(-1.0, &round.alpha, &mut alpha);
         let motion = Sliding::of(self.recovery, x, alpha)?;
-        let reach = motion.reach(self.recovery, &self.displacements(round)?, &round.held);
+        let reach = motion.reach(self.recovery, &self.displacements(&round.x, &round.alpha)?, &round.held);
         Ok(self.moved(round, &motion, reach.min(1.0)))
     }
 
@@ -329,8 +304,8 @@ impl<'a> Search<'a, '_> {
         Step { b, x: round.x.clone(), is_trial: false }
     }
 
-    fn displacements(&self, round: &Round) -> Result<Vec<f64>> {
-        Ok(self.recovery.recover(&self.recovery.deformed(&round.x)?, &round.x, &round.alpha).u)
+    fn displacements(&self, x: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+        Ok(self.recovery.recover(&self.recovery.deformed(x)?, x, alpha).u)
     }
 }
 

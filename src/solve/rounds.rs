@@ -14,6 +14,7 @@ use crate::solve::feedback::NegativeMotions;
 use crate::solve::friction::solve_with_friction;
 use crate::solve::near::{self, Near};
 use crate::solve::negative::{Known, Next, Search, Step};
+use crate::solve::recovery::Recovery;
 
 /// `tolerance` of the first round if others follow: it only has to find the active rows.
 const ROUGH: f64 = 1e-5;
@@ -29,6 +30,7 @@ pub fn solve_in_rounds<'a>(
 ) -> Result<Solution> {
     let negative = NegativeMotions::of(case.ready);
     let rough = Settings { tolerance: means.settings.tolerance.max(ROUGH), ..means.settings.clone() };
+    let rounds = Rounds { case, means, qp, negative: &negative };
     let (mut near, mut known) = (Near::new(case, judge.recovery.scaled), Known::default());
     let (mut step, mut counts, mut last) =
         (Step::first(&negative, start.to_vec()), Counts::default(), None::<Solution>);
@@ -64,16 +66,24 @@ pub fn solve_in_rounds<'a>(
         if negative.modes.is_empty() {
             return Ok(solution);
         }
-        let search = Search { case, means, qp, negative: &negative, recovery: &judge.recovery };
         let unsettled = is_rough || judge.judged == Judged::AmplitudesMoved;
         let next = match &solution.verdict {
-            Verdict::Solved => search.after(&mut known, &step, (&solution, held), (unsettled, is_rough)),
-            _ => search.without_answer(&mut known, &step, &solution),
+            Verdict::Solved => rounds.search(&judge.recovery).after(
+                &mut known,
+                &step,
+                (&solution, held),
+                (unsettled, is_rough),
+            ),
+            _ => rounds.search(&judge.recovery).without_answer(&mut known, &step, &solution),
         };
         step = match next {
             Ok(Next::Step(next)) => next,
             Ok(Next::Mend(next)) => match judge.mended(&solution, true) {
-                Ok(Mended::Accepted(mended)) => return Ok(mended),
+                Ok(Mended::Accepted(mended))
+                    if rounds.search(&judge.recovery).is_minimum(&step, &mended)? =>
+                {
+                    return Ok(mended)
+                }
                 Ok(_) => next,
                 Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
             },
@@ -82,6 +92,21 @@ pub fn solve_in_rounds<'a>(
         };
         near.forget();
         last = Some(solution);
+    }
+}
+
+/// What all rounds have in common.
+struct Rounds<'a, 'b> {
+    case: Case<'a>,
+    means: &'b MethodOptions<'a>,
+    qp: Qp<'a>,
+    negative: &'b NegativeMotions,
+}
+
+impl<'a> Rounds<'a, '_> {
+    fn search<'c>(&'c self, recovery: &'c Recovery<'a>) -> Search<'a, 'c> {
+        let Self { case, means, qp, negative } = *self;
+        Search { case, means, qp, negative, recovery }
     }
 }
 

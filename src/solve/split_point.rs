@@ -4,8 +4,10 @@ use crate::certificate::NOISE;
 use crate::error::Result;
 use crate::linalg::twofold::TwofoldVector;
 use crate::linalg::vector::{axpy, weighted_norm};
+use crate::qp::friction::State;
 use crate::qp::Point;
 use crate::solve::feedback::{Feedback, NegativeMotions};
+use crate::solve::friction::Residuals;
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovery};
 use crate::solve::slides::FAR;
@@ -43,11 +45,12 @@ pub struct SplitPoint {
 }
 
 impl SplitPoint {
-    /// The current answer, or zero if it does not pass: redundant rows may have spoilt its forces.
+    /// The current answer, or zero if it does not pass: redundant rows may have spoilt its forces. With friction the states need the
+    /// answer.
     pub fn of(recovery: &Recovery, ending: &Ending, apart: f64) -> Result<Self> {
         let Ending { solution, deformed, judgement, .. } = ending;
         let modes = solution.alpha.len();
-        if !judgement.certificate.passed() {
+        if !judgement.certificate.passed() && !recovery.friction {
             return Ok(Self::at_origin(vec![0.0; deformed.len()], vec![0.0; solution.x.len()], modes, apart));
         }
         let deformed = recovery.deformed(&solution.x)?;
@@ -125,7 +128,7 @@ impl SplitPoint {
         face: FaceSolver,
     ) -> Result<f64> {
         let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
-        let mut load = recovery.load_left(&self.v.parts(), &self.x.parts())?;
+        let load = recovery.load_left(&self.v.parts(), &self.x.parts())?;
         let left = self.gaps_left(recovery);
         let (moved, forces) = match face {
             FaceSolver::Sparse(face) => {
@@ -153,16 +156,44 @@ impl SplitPoint {
                 let (step, turn) = feedback.solve(negative, force, &dual.resultants(&load))?;
                 let mut forces = vec![0.0; self.x.len()];
                 face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
-                rows.take_forces(&forces, &mut load);
-                let mut moved = recovery.inverse(&load)?;
-                moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
-                axpy(1.0, &self.turn(recovery, &turn)?, &mut moved);
-                (moved, forces)
+                (self.moved_by(recovery, load, (&forces, &turn))?, forces)
             }
         };
         forces.iter().enumerate().for_each(|(i, force)| self.x.add(i, *force));
         self.corrected.iter_mut().zip(&moved).for_each(|(most, by)| *most = most.max(by.abs()));
         Ok(weighted_norm(&moved, |i| rows.metric[i]))
+    }
+
+    /// Adds the motion of the bodies by residual loads, the change of the forces and of the amplitudes, and returns it.
+    fn moved_by(
+        &mut self,
+        recovery: &Recovery,
+        mut load: Vec<f64>,
+        (forces, turn): (&[f64], &[f64]),
+    ) -> Result<Vec<f64>> {
+        recovery.ready.rows.take_forces(forces, &mut load);
+        let mut moved = recovery.inverse(&load)?;
+        moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
+        axpy(1.0, &self.turn(recovery, turn)?, &mut moved);
+        Ok(moved)
+    }
+
+    /// A Newton step of the laws of friction for the residual loads, gaps and slips; the length of the step and the states that it
+    /// assumes. None if too many rows may carry a force.
+    pub fn step_with_friction(&mut self, recovery: &Recovery) -> Result<Option<(f64, Vec<State>)>> {
+        let dual = &recovery.ready.dual;
+        let gaps = self.gaps_left(recovery);
+        let open = recovery.open_rows(&self.x.values(), &gaps)?;
+        self.hold(&open);
+        let (gaps, load) = (self.gaps_left(recovery), recovery.load_left(&self.v.parts(), &self.x.parts())?);
+        let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
+        let follows: Vec<f64> = d.iter().map(|d| -d).collect();
+        let (x, left) = (self.x.values(), dual.resultants(&load));
+        let at = Residuals { x: &x, gaps: &gaps, follows: &follows, left: &left };
+        let Some(step) = recovery.friction_step(&open, at)? else { return Ok(None) };
+        let moved = self.moved_by(recovery, load, (&step.forces, &step.turn))?;
+        step.forces.iter().enumerate().for_each(|(i, force)| self.x.add(i, *force));
+        Ok(Some((weighted_norm(&moved, |i| recovery.ready.rows.metric[i]), step.states)))
     }
 
     /// The active set by the signs of forces and gaps.

@@ -7,10 +7,10 @@ use crate::linalg::vector::axpy;
 use crate::linalg::Matrix;
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::coordinates::Law;
-use crate::qp::friction::face::Face;
-use crate::qp::friction::newton::Point;
+use crate::qp::friction::face::{Face, State};
+use crate::qp::friction::newton::{Point, RHO};
 use crate::qp::friction::pairs::Step;
-use crate::qp::friction::FrictionProblem;
+use crate::qp::friction::{Cones, FrictionProblem};
 use crate::qp::Direct;
 
 /// A pivot of the matrix with columns of unit length is rounding if it is below this.
@@ -51,11 +51,22 @@ impl Dense {
         self.solved(problem, face, now).map(|(step, _)| step)
     }
 
-    /// dx and da with `[L; w (W'F + D S)] dx - w A'da = -residual`, `G dx = e - G x`.
+    /// dx with its image, and da, from a point of the method.
     pub fn solved(&self, problem: &FrictionProblem, face: &Face, now: &Point) -> Result<(Step, Vec<f64>)> {
+        let mut left = problem.e.to_vec();
+        problem.g_transposed.mul_transposed_add(-1.0, &now.x, &mut left);
+        let residual = face.residual(&now.x, &now.r);
+        let (dx, turn) = self.newton(problem, face, &Asked { residual, left, stiffness: &[] })?;
+        let mut dg = vec![0.0; dx.len()];
+        dx.iter().enumerate().for_each(|(j, by)| axpy(*by, self.f.col(j), &mut dg));
+        Ok((Step { dx, dg, rest: 0.0 }, turn))
+    }
+
+    /// dx and da with `[L; w (W'F + D S)] dx - w A'da = -residual`, `G dx + S da = left`.
+    fn newton(&self, problem: &FrictionProblem, face: &Face, asked: &Asked) -> Result<(Vec<f64>, Vec<f64>)> {
         interrupt::check()?;
         tally::costly();
-        let (m, r) = (problem.b.len(), problem.e.len());
+        let (m, r) = (self.f.rows, asked.left.len());
         let (mut matrix, mut target) = (Matrix::zeros(m + r, m + r)?, vec![0.0; m + r]);
         let weights = face.weights();
         let weight = |k: usize| if face.coordinates[k].is_free() { weights[k] } else { 1.0 };
@@ -77,15 +88,65 @@ impl Dense {
                 }
             }
         }
-        let residual = face.residual(&now.x, &now.r);
-        residual.iter().enumerate().for_each(|(k, v)| target[k] = -weight(k) * v);
-        let mut left = problem.e.to_vec();
-        problem.g_transposed.mul_transposed_add(-1.0, &now.x, &mut left);
-        target[m..].copy_from_slice(&left);
+        asked.stiffness.iter().for_each(|&(mode, own)| matrix.set(m + mode, m + mode, own));
+        asked.residual.iter().enumerate().for_each(|(k, v)| target[k] = -weight(k) * v);
+        target[m..].copy_from_slice(&asked.left);
         let mut dx = least_squares(&matrix, &target, CUT)?;
         let turn = dx.split_off(m);
-        let mut dg = vec![0.0; m];
-        dx.iter().enumerate().for_each(|(j, by)| axpy(*by, self.f.col(j), &mut dg));
-        Ok((Step { dx, dg, rest: 0.0 }, turn))
+        Ok((dx, turn))
     }
+}
+
+/// What a Newton step has to remove.
+struct Asked<'a> {
+    residual: Vec<f64>,
+    /// `e - G x`
+    left: Vec<f64>,
+    /// Diagonal of S: modes with negative stiffness.
+    stiffness: &'a [(usize, f64)],
+}
+
+/// A point of the corrector on the rows that may carry a force, in lengths and forces of the dual.
+pub struct Corrected<'a> {
+    pub x: &'a [f64],
+    /// Gaps, and minus the slips.
+    pub r: &'a [f64],
+    /// r after the residual loads have moved the bodies.
+    pub follows: &'a [f64],
+    /// What the forces leave of the resultants.
+    pub left: &'a [f64],
+    /// Modes with negative stiffness.
+    pub stiffness: &'a [(usize, f64)],
+}
+
+/// The Newton step of a point by dense factors: dx, da, and the states that it assumes; none if rows and modes are too many.
+pub fn newton_step(
+    problem: &FrictionProblem,
+    direct: Direct,
+    at: &Corrected,
+) -> Result<Option<(Vec<f64>, Vec<f64>, Vec<State>)>> {
+    let Some(dense) = Dense::new(problem, direct)? else { return Ok(None) };
+    let face = Face::at(problem.cones, at.x, at.r, RHO);
+    let residual = face.residual(at.x, at.follows);
+    let asked = Asked { residual, left: at.left.to_vec(), stiffness: at.stiffness };
+    let (dx, turn) = dense.newton(problem, &face, &asked)?;
+    Ok(Some((dx, turn, face.states)))
+}
+
+/// The rows that carry no force at this point: of nodes that open, tangential ones without a bound.
+pub fn without_force(cones: &Cones, x: &[f64], r: &[f64]) -> Vec<bool> {
+    let mut open = vec![false; x.len()];
+    for at in Face::at(cones, x, r, RHO).coordinates.iter().filter(|at| at.coupling.is_none()) {
+        if at.law == (Law::Held { value: 0.0 }) {
+            at.rows.into_iter().for_each(|row| open[row] = true);
+        }
+    }
+    open
+}
+
+/// The tangential rows of nodes that slip at this point.
+pub fn slipping<'c>(cones: &'c Cones, x: &[f64], r: &[f64]) -> impl Iterator<Item = usize> + 'c {
+    let states = Face::at(cones, x, r, RHO).states;
+    let slips = cones.nodes().iter().zip(states).filter(|(_, state)| *state == State::Slip);
+    slips.flat_map(|(node, _)| node.tangents().iter().copied())
 }

@@ -29,6 +29,7 @@ mod unheld;
 
 pub use cones::{Cones, Force, Node, Place};
 pub use coordinates::{Coordinate, Law};
+pub use direct::{newton_step, slipping, without_force, Corrected};
 pub use end::{friction, known_face};
 pub use face::{Face, State};
 pub use pairs::{DualAnswer, Pairs, PairsBetween};
