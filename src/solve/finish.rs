@@ -163,7 +163,8 @@ impl<'a> Finish<'a, '_> {
             let Some((size, states)) = point.step_with_friction(self.recovery)? else { break };
             self.ending.solution.counts.direct += 1;
             self.keep(&point, 0)?;
-            if states == before && !(size < 0.5 * last) {
+            let is_settled = states == before && !(size < 0.5 * last);
+            if is_settled || self.passes() && self.ending.judgement.certificate.worst() <= ROUNDING {
                 break;
             }
             (last, before) = (size, states);

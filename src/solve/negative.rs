@@ -166,9 +166,6 @@ impl<'a> Search<'a, '_> {
 
     /// What follows a round without an answer: no forces balance its load if the energy falls without end.
     pub fn without_answer(&self, known: &mut Known<'a>, step: &Step, solution: &Solution) -> Result<Next> {
-        if known.rounds == 0 {
-            return Ok(Next::End(solution.verdict.clone()));
-        }
         known.rounds += 1;
         if let (Some(last), true) = (&known.last, step.is_trial && self.recovery.friction) {
             return Ok(Next::Step(self.back(last, &step.b)?));
@@ -180,6 +177,7 @@ impl<'a> Search<'a, '_> {
             }
         }
         match &known.last {
+            _ if known.rounds == 1 => Ok(Next::End(solution.verdict.clone())),
             _ if known.rounds >= ROUNDS || !step.is_trial => Ok(Next::End(Verdict::Stalled)),
             Some(last) if !last.is_rough => Ok(Next::Step(self.back(last, &step.b)?)),
             _ => Ok(Next::Step(Step::first(self.negative, solution.x.clone()))),

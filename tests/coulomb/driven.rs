@@ -129,7 +129,7 @@ fn proves(deck: &Deck, error: &Error) -> bool {
 }
 
 /// A block on the ground, pressed, pushed by a part of what friction holds, driven along a rotation.
-fn pressed(seed: u64) -> Deck {
+pub fn pressed(seed: u64) -> Deck {
     let mut random = Random::new(seed ^ 0x7469_6c74);
     let dimension = 2 + usize::from(random.chance(0.3));
     let elements = match dimension {

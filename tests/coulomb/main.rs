@@ -11,6 +11,7 @@ mod hand_over;
 mod idle;
 mod invariance;
 mod judge;
+mod last_iterations;
 mod slides;
 mod space;
 mod struck_out;

@@ -9,7 +9,7 @@ use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::{
     FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
 };
-use crate::qp::{AcceptanceTest, Counts, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Mended, Solution, Verdict};
 
 /// Below this merit the answer may be as accurate as rounding allows.
 const NEAR: f64 = 1e-7;
@@ -98,8 +98,8 @@ impl<'a> Run<'a, '_> {
             let (near, met) = (now.merit <= NEAR * self.scale, self.is_met(&now));
             if near || met {
                 let answer = self.finished(&now)?;
-                if judge.accepts(&answer.x, &answer.alpha)? {
-                    self.last = answer;
+                let corrects = (!met || refusal == refusals) && limits.direct.is_some();
+                if self.accepted(&answer, corrects, judge)? {
                     return Ok(Verdict::Solved);
                 }
                 // g has the rounding of earlier, far larger steps; the last product has not
@@ -114,23 +114,51 @@ impl<'a> Run<'a, '_> {
             }
             now = self.otherwise(limits, &start, now)?;
             if !self.is_met(&now) {
-                return self.best(judge);
+                return self.best(limits, judge);
             }
         }
         Ok(Verdict::Inaccurate)
     }
 
     /// The end without a point that meets the laws: the best point may be as accurate as rounding allows.
-    fn best(&mut self, judge: &mut dyn AcceptanceTest) -> Result<Verdict> {
-        if self.last.merit <= NEAR * self.scale {
-            let answer = self.finished(&self.last.clone())?;
-            if judge.accepts(&answer.x, &answer.alpha)? {
-                self.last = answer;
-                return Ok(Verdict::Solved);
+    fn best(&mut self, limits: FrictionLimits, judge: &mut dyn AcceptanceTest) -> Result<Verdict> {
+        let (last, corrects) = (self.last.clone(), limits.direct.is_some());
+        let solved = match last.merit <= NEAR * self.scale {
+            true => {
+                let answer = self.finished(&last)?;
+                self.accepted(&answer, corrects, judge)?
             }
+            false => corrects && self.corrected(&last, judge)?,
+        };
+        if solved {
+            return Ok(Verdict::Solved);
         }
         let over = self.counts.products >= self.limit;
         Ok(if over { Verdict::StepLimit } else { Verdict::Stalled })
+    }
+
+    /// Whether the answer passes, as it is or, if `corrects`, corrected by better data; then it is kept.
+    fn accepted(&mut self, answer: &Point, corrects: bool, judge: &mut dyn AcceptanceTest) -> Result<bool> {
+        if judge.accepts(&answer.x, &answer.alpha)? {
+            self.last.clone_from(answer);
+            return Ok(true);
+        }
+        Ok(corrects && self.corrected(answer, judge)?)
+    }
+
+    /// Whether the point corrected by better data passes; then it is kept.
+    fn corrected(&mut self, answer: &Point, judge: &mut dyn AcceptanceTest) -> Result<bool> {
+        let (x, alpha, counts) = (answer.x.clone(), answer.alpha.clone(), Counts::default());
+        let refused =
+            Solution { x, alpha, undetermined: 0, scale: self.scale, verdict: Verdict::Inaccurate, counts };
+        let Mended::Accepted(Solution { x, alpha, counts, .. }) = judge.mended(&refused, false)? else {
+            return Ok(false);
+        };
+        self.counts = self.counts + counts;
+        let laws = Laws { cones: self.problem.cones, rho: RHO };
+        let g = self.gradient(&x)?;
+        self.last = self.point(laws, x, g, alpha)?;
+        Ok(true)
     }
 
     /// The answer: exact zeros, forces exactly within the cones, gaps from a separate product.

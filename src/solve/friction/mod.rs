@@ -10,7 +10,7 @@ use crate::progress::Steps;
 use crate::qp::friction::{
     friction, unheld, Cones, DualAnswer, FrictionLimits, FrictionSolution, FrictionStart, State,
 };
-use crate::qp::{AcceptanceTest, AnswerFace, Mended, Qp, Restricted, Solution, Verdict};
+use crate::qp::{AcceptanceTest, AnswerFace, Qp, Restricted, Solution, Verdict};
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::fallback::{Found, MethodOptions};
@@ -66,14 +66,6 @@ pub fn solve_with_friction(
     };
     let mut found = friction(problem, limits, start, judged, steps)?;
     let counts = found.counts;
-    let gave_up = matches!(found.verdict, Verdict::Stalled | Verdict::Inaccurate | Verdict::StepLimit);
-    if gave_up && limits.direct.is_some() {
-        let (x, alpha, verdict) = (found.x.clone(), found.alpha.clone(), found.verdict.clone());
-        let incomplete = Solution { x, alpha, undetermined: 0, scale: found.scale, verdict, counts };
-        if let Mended::Accepted(mended) = judged.mended(&incomplete, false)? {
-            (found.x, found.alpha, found.verdict) = (mended.x, mended.alpha, Verdict::Solved);
-        }
-    }
     if let (Verdict::Stalled, Some(slide)) = (&found.verdict, &found.slide) {
         return Err(named(case, slide, found.counts.starts)?);
     }
