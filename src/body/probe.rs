@@ -9,9 +9,10 @@ use crate::body::rounded::Rounded;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::random::Random;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{axpy, norm_max, ratio, weighted_norm};
+use crate::linalg::vector::{axpy, dot, norm_max, ratio, weighted_norm};
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
 use crate::platform::memory::zeros;
+use crate::platform::{interrupt, tally};
 
 /// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
 const NEGATIVE_PIVOT: f64 = 1e-10;
@@ -132,13 +133,20 @@ pub(super) fn known_to(factor: &Factor, k: &Multiple, r: &Matrix) -> Result<f64>
 }
 
 /// `R - (K + theta D)^-1 K R` with `R'DR = I`, theta rounding over the error of R, if only rounding of K resists it: R was given
-/// with fewer digits than K has. None if K resists these motions. Parts so soft that rounding of K would move them more are
-/// left unchanged.
+/// with fewer digits than K has. None if K resists these motions: errors of R enter `R'K R` squared, those of K do not. Parts so
+/// soft that rounding of K would move them more are left unchanged.
 pub(super) fn sharpened(k: &Multiple, r: &Matrix) -> Result<Option<Matrix>> {
-    let error = resistance(k, r)?;
-    if error <= KNOWN {
+    let (image, terms) = k.mul_columns(r)?;
+    let error = resistance(&image, &terms);
+    let is_rounding = |i: usize, j: usize| {
+        let size = r.col(i).iter().zip(terms.col(j)).map(|(r, terms)| r.abs() * terms).sum::<f64>();
+        dot(r.col(i), image.col(j)).abs() <= KNOWN * size
+    };
+    if error <= KNOWN || !(0..r.cols).all(|j| (0..=j).all(|i| is_rounding(i, j))) {
         return Ok(None);
     }
+    interrupt::check()?;
+    tally::costly();
     let mut shifted = k.matrix.copied("a null space")?;
     let theta = SHIFT * f64::EPSILON / error;
     (0..r.rows).for_each(|i| shifted.val[shifted.ptr[i + 1] - 1] *= 1.0 + theta);
@@ -153,14 +161,14 @@ pub(super) fn sharpened(k: &Multiple, r: &Matrix) -> Result<Option<Matrix>> {
         axpy(-1.0, &excess, sharp.col_mut(j));
     }
     let sharp = orthonormal(|i| k.metric(i, 1.0), &sharp)?;
-    Ok((resistance(k, &sharp)? <= KNOWN).then_some(sharp))
+    let (image, terms) = k.mul_columns(&sharp)?;
+    Ok((resistance(&image, &terms) <= KNOWN).then_some(sharp))
 }
 
 /// `max_i |(K R)_i| / |(|K||R|)_i|` over the rows i: at an unknown that some vector hardly moves, others tell what is rounding.
-fn resistance(k: &Multiple, r: &Matrix) -> Result<f64> {
-    let (image, terms) = k.mul_columns(r)?;
+fn resistance(image: &Matrix, terms: &Matrix) -> f64 {
     let row = |m: &Matrix, i: usize| (0..m.cols).map(|j| m.get(i, j) * m.get(i, j)).sum::<f64>().sqrt();
-    Ok((0..r.rows).map(|i| ratio(row(&image, i), row(&terms, i))).fold(0.0, f64::max))
+    (0..image.rows).map(|i| ratio(row(image, i), row(terms, i))).fold(0.0, f64::max)
 }
 
 pub(super) fn missing_mode(dof: usize, found: f64, given: usize) -> Error {
@@ -169,4 +177,45 @@ pub(super) fn missing_mode(dof: usize, found: f64, given: usize) -> Error {
          one is largest at this dof (|K v| = {found:.1e} |K||v|)"
     );
     Error::new(Kind::NullSpace, what).dof(dof).value(found).limit(SINGULAR)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Symmetric;
+
+    /// A free chain of springs, the first unknown held by `ground`.
+    fn chain(springs: &[f64], ground: f64) -> Multiple {
+        let (mut ptr, mut col, mut val) = (vec![0, 1], vec![0], vec![springs[0] + ground]);
+        for (i, s) in springs.iter().enumerate() {
+            let next = springs.get(i + 1).unwrap_or(&0.0);
+            col.extend([i as u32, i as u32 + 1]);
+            val.extend([-s, s + next]);
+            ptr.push(col.len());
+        }
+        Symmetric::new(ptr, col, val).into()
+    }
+
+    fn constants(error: f64) -> Matrix {
+        Matrix::from_fn(5, 1, |i, _| 1.0 + error * (3 * i % 5) as f64).unwrap()
+    }
+
+    /// Except for noise, the part behind the soft spring moves as before.
+    #[test]
+    fn a_null_vector_with_noise_becomes_one_that_only_rounding_resists() {
+        for springs in [[1.0, 2.0, 3.0, 1.0], [1.0, 2.0, 1e-9, 3.0]] {
+            let k = chain(&springs, 0.0);
+            let sharp = sharpened(&k, &constants(1e-12)).unwrap().unwrap();
+            let (image, terms) = k.mul_columns(&sharp).unwrap();
+            assert!(resistance(&image, &terms) <= KNOWN);
+            assert!(sharp.data.iter().all(|r| (r / sharp.data[0] - 1.0).abs() < 1e-11), "{sharp:?}");
+        }
+    }
+
+    #[test]
+    fn a_null_vector_that_k_resists_or_that_is_sharp_stays_as_it_is() {
+        for (ground, error) in [(1e-10, 1e-12), (0.0, 0.0)] {
+            assert!(sharpened(&chain(&[1.0, 2.0, 3.0, 1.0], ground), &constants(error)).unwrap().is_none());
+        }
+    }
 }

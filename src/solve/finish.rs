@@ -28,10 +28,10 @@ const NO_WORSE: f64 = 1.1;
 const UNEVEN: f64 = 100.0;
 
 /// Whether option `finish` asks for the finish of an island's answer. `automatic`: if an error that passes the
-/// certificate may be large on some body. Not with friction: those answers already have exact forces for their states.
+/// certificate may be large on some body. With friction only if it is asked for: what the test refuses has been corrected.
 pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending) -> bool {
     if recovery.friction {
-        return false;
+        return settings.finish == FinishBy::Direct;
     }
     let default = settings.method == Method::Proportioning && settings.finish == FinishBy::Automatic;
     let overlooked = ending.judgement.unevenness > UNEVEN;
