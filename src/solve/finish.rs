@@ -162,7 +162,7 @@ impl<'a> Finish<'a, '_> {
             interrupt::check()?;
             let Some((size, states)) = point.step_with_friction(self.recovery)? else { break };
             self.ending.solution.counts.direct += 1;
-            self.keep(&point, 0)?;
+            self.keep(&point, self.ending.solution.undetermined)?;
             let is_settled = states == before && !(size < 0.5 * last);
             if is_settled || self.passes() && self.ending.judgement.certificate.worst() <= ROUNDING {
                 break;

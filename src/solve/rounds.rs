@@ -78,15 +78,19 @@ pub fn solve_in_rounds<'a>(
         };
         step = match next {
             Ok(Next::Step(next)) => next,
-            Ok(Next::Mend(next)) => match judge.mended(&solution, true) {
-                Ok(Mended::Accepted(mended))
-                    if rounds.search(&judge.recovery).is_minimum(&step, &mended)? =>
-                {
-                    return Ok(mended)
+            Ok(Next::Mend(next)) => {
+                let mended = judge.mended(&solution, true).and_then(|found| match found {
+                    Mended::Accepted(mended) => {
+                        Ok(rounds.search(&judge.recovery).is_minimum(&step, &mended)?.then_some(mended))
+                    }
+                    _ => Ok(None),
+                });
+                match mended {
+                    Ok(Some(mended)) => return Ok(mended),
+                    Ok(None) => next,
+                    Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
                 }
-                Ok(_) => next,
-                Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
-            },
+            }
             Ok(Next::End(verdict)) => return Ok(Solution { verdict, ..solution }),
             Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
         };

@@ -56,17 +56,23 @@ impl Dense {
         let mut left = problem.e.to_vec();
         problem.g_transposed.mul_transposed_add(-1.0, &now.x, &mut left);
         let residual = face.residual(&now.x, &now.r);
-        let (dx, turn) = self.newton(problem, face, &Asked { residual, left, stiffness: &[] })?;
+        let (dx, turn) = self.newton(problem, face, &residual, (&left, &[]))?;
         let mut dg = vec![0.0; dx.len()];
         dx.iter().enumerate().for_each(|(j, by)| axpy(*by, self.f.col(j), &mut dg));
         Ok((Step { dx, dg, rest: 0.0 }, turn))
     }
 
-    /// dx and da with `[L; w (W'F + D S)] dx - w A'da = -residual`, `G dx + S da = left`.
-    fn newton(&self, problem: &FrictionProblem, face: &Face, asked: &Asked) -> Result<(Vec<f64>, Vec<f64>)> {
+    /// dx and da with `[L; w (W'F + D S)] dx - w A'da = -residual`, `G dx + S da = left`; `stiffness`: diagonal of S, by modes.
+    fn newton(
+        &self,
+        problem: &FrictionProblem,
+        face: &Face,
+        residual: &[f64],
+        (left, stiffness): (&[f64], &[(usize, f64)]),
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
         interrupt::check()?;
         tally::costly();
-        let (m, r) = (self.f.rows, asked.left.len());
+        let (m, r) = (self.f.rows, left.len());
         let (mut matrix, mut target) = (Matrix::zeros(m + r, m + r)?, vec![0.0; m + r]);
         let weights = face.weights();
         let weight = |k: usize| if face.coordinates[k].is_free() { weights[k] } else { 1.0 };
@@ -88,30 +94,21 @@ impl Dense {
                 }
             }
         }
-        asked.stiffness.iter().for_each(|&(mode, own)| matrix.set(m + mode, m + mode, own));
-        asked.residual.iter().enumerate().for_each(|(k, v)| target[k] = -weight(k) * v);
-        target[m..].copy_from_slice(&asked.left);
+        stiffness.iter().for_each(|&(mode, own)| matrix.set(m + mode, m + mode, own));
+        residual.iter().enumerate().for_each(|(k, v)| target[k] = -weight(k) * v);
+        target[m..].copy_from_slice(left);
         let mut dx = least_squares(&matrix, &target, CUT)?;
         let turn = dx.split_off(m);
         Ok((dx, turn))
     }
 }
 
-/// What a Newton step has to remove.
-struct Asked<'a> {
-    residual: Vec<f64>,
-    /// `e - G x`
-    left: Vec<f64>,
-    /// Diagonal of S: modes with negative stiffness.
-    stiffness: &'a [(usize, f64)],
-}
-
-/// A point of the corrector on the rows that may carry a force, in lengths and forces of the dual.
+/// A point of the corrector, in lengths and forces of the dual.
 pub struct Corrected<'a> {
     pub x: &'a [f64],
-    /// Gaps, and minus the slips.
+    /// `c + C x - B u`: gaps, and minus the slips.
     pub r: &'a [f64],
-    /// r after the residual loads have moved the bodies.
+    /// The same after K+ has taken the residual loads.
     pub follows: &'a [f64],
     /// What the forces leave of the resultants.
     pub left: &'a [f64],
@@ -128,8 +125,7 @@ pub fn newton_step(
     let Some(dense) = Dense::new(problem, direct)? else { return Ok(None) };
     let face = Face::at(problem.cones, at.x, at.r, RHO);
     let residual = face.residual(at.x, at.follows);
-    let asked = Asked { residual, left: at.left.to_vec(), stiffness: at.stiffness };
-    let (dx, turn) = dense.newton(problem, &face, &asked)?;
+    let (dx, turn) = dense.newton(problem, &face, &residual, (at.left, at.stiffness))?;
     Ok(Some((dx, turn, face.states)))
 }
 

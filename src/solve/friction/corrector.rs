@@ -7,17 +7,6 @@ use crate::qp::{DirectOnRows, Restricted};
 use crate::solve::friction::laws::{cones, problem};
 use crate::solve::recovery::{Faces, Recovery};
 
-/// Residuals of a point: lengths over the rows of the dual, and resultants.
-pub struct Residuals<'a> {
-    pub x: &'a [f64],
-    /// `c + C x - B u`: gaps, and minus the slips.
-    pub gaps: &'a [f64],
-    /// The same after K+ has taken the residual loads.
-    pub follows: &'a [f64],
-    /// What is left of the resultants.
-    pub left: &'a [f64],
-}
-
 /// The change of forces, over all rows, and amplitudes, and the states of the nodes that it assumes.
 pub struct Step {
     pub forces: Vec<f64>,
@@ -42,14 +31,13 @@ impl Recovery<'_> {
     }
 
     /// None if too many rows may carry a force. Those marked in `open` carry none.
-    pub fn friction_step(&self, open: &[bool], at: Residuals) -> Result<Option<Step>> {
+    pub fn friction_step(&self, open: &[bool], at: Corrected) -> Result<Option<Step>> {
         let Faces { qp, direct } = &self.faces;
         let rows: Vec<usize> = (0..open.len()).filter(|&i| !open[i]).collect();
         let near = Restricted::new(*qp, &rows);
         let cones = cones(self.ready, &self.scaled.gaps, &rows)?;
-        let [x, r, follows] = [at.x, at.gaps, at.follows].map(|v| near.start(v));
-        let stiffness = &self.ready.dual.negative;
-        let at = Corrected { x: &x, r: &r, follows: &follows, left: at.left, stiffness };
+        let [x, r, follows] = [at.x, at.r, at.follows].map(|v| near.start(v));
+        let at = Corrected { x: &x, r: &r, follows: &follows, ..at };
         let block = DirectOnRows { whole: *direct, rows: &rows };
         let found = newton_step(&problem(near.qp(), &cones, None), block.direct(), &at)?;
         Ok(found.map(|(forces, turn, states)| Step { forces: near.spread(&forces), turn, states }))

@@ -18,7 +18,6 @@ use crate::solve::friction::laws::{cones, problem, OfBodies};
 use crate::solve::friction::slides::named;
 use crate::solve::gaps::Gaps;
 
-pub use corrector::Residuals;
 pub use known::on_known_states;
 
 /// The forces within their cones, on some rows, that leave the least of the resultants, each multiplied by its weight; and
