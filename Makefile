@@ -32,7 +32,7 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO_BUILD_TARGET)/)release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
+.PHONY: all lib data setup demo battery rungs bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
 .PHONY: man deb
 .PHONY: abi licences packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
@@ -140,6 +140,13 @@ battery:
 	    every_random_problem no_marginal every_varied_problem small_problems_of_the_battery every_hard_problem \
 	    an_answer_does_not_depend
 	BATTERY=$(N) $(CARGO) test --release --locked --test coulomb -- problems_with_friction
+
+# What each second try saves: problems that are not solved, or solved wrongly, without it.
+rungs:
+	for mixture in 1 2; do for test in battery coulomb; do \
+	    BATTERY=$(N) BATTERY_MIXTURE=$$mixture $(CARGO) test --release --locked --test $$test -- \
+	        what_each_second_try --ignored --nocapture --test-threads=1 || exit 1; \
+	done; done
 
 # The bits of many answers, a line for 100: `make bits > before`, then again after a change that is to keep them.
 bits:

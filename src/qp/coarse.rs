@@ -12,7 +12,7 @@ use crate::linalg::{Cholesky, Csr, Matrix, Runs};
 use crate::platform::memory::headroom;
 use crate::platform::{interrupt, tally};
 use crate::qp::between_solves::{BetweenSolves, Space};
-use crate::qp::Qp;
+use crate::qp::{Qp, Rung};
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.
@@ -139,8 +139,10 @@ impl<'a> Coarse<'a> {
             let mut w = factors.gram().sum(g_transposed, held)?;
             w.val.iter_mut().for_each(|v| *v *= by);
             let rows = FaceRows { g_transposed, held, unit, whole, rounding };
-            if let Some(inverse) = PseudoInverse::new(&w, factors.analysis(), &rows)? {
-                return Ok(Solver::Singular(Box::new(inverse)));
+            if Rung::SparseInverse.is_tried() {
+                if let Some(inverse) = PseudoInverse::new(&w, factors.analysis(), &rows)? {
+                    return Ok(Solver::Singular(Box::new(inverse)));
+                }
             }
         }
         let mut known = match by_blocks.take() {
@@ -175,7 +177,7 @@ impl<'a> Coarse<'a> {
             let unit = self.space.unit;
             let mut face = self.on(held)?;
             let known = !face.is_weak() && amplified * norm(&image) <= ERROR * unit * norm(&rest);
-            if known || pass == PASSES {
+            if known || pass == PASSES || !Rung::Fit.is_tried() {
                 break;
             }
             axpy(1.0, &face.solve(&image)?, &mut alpha);

@@ -19,6 +19,7 @@ pub mod paper;
 mod projection;
 mod proportioning;
 mod restricted;
+mod rungs;
 
 pub use acceptance::{AcceptanceTest, Limits, Mended, Observer, Solution, StepKind, StepReport, Verdict};
 pub use between_solves::BetweenSolves;
@@ -29,6 +30,7 @@ pub use interior::{Interior, Inverse, Point, Stiffness};
 pub use nearest::{nearest_point, Nearest, Polyhedron};
 pub use proportioning::{minimise, weighted};
 pub use restricted::{DirectOnRows, Judged, Restricted};
+pub use rungs::{during, Rung, Tries};
 
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};
@@ -93,6 +95,8 @@ pub struct Counts {
     /// Newton steps for friction, and number of starts.
     pub newton: usize,
     pub starts: usize,
+    /// Second tries.
+    pub tries: Tries,
 }
 
 impl std::ops::Add for Counts {
@@ -111,6 +115,7 @@ impl std::ops::Add for Counts {
             outer: self.outer + other.outer,
             newton: self.newton + other.newton,
             starts: self.starts + other.starts,
+            tries: self.tries + other.tries,
         }
     }
 }

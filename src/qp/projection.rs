@@ -7,7 +7,7 @@ use crate::linalg::vector::{axpy, dot, norm, ratio};
 use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::interior::inside;
-use crate::qp::Qp;
+use crate::qp::{Qp, Rung};
 
 /// The nearest point and the multiplier beta of `G l = e`.
 pub struct Projected {
@@ -117,7 +117,7 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         if error <= ACCURACY && is_met(&now) {
             return now.done(qp, coarse).map(Some);
         }
-        if cuts == PATIENCE {
+        if cuts == PATIENCE && Rung::ProjectionInside.is_tried() {
             (cuts, end) = (cuts + 1, end.min(step + FURTHER_STEPS));
             let found = inside(qp, coarse, (y, held), (1.0, 0.0), now.beta.clone())?;
             let next = Trial::new(target, coarse, found.motion);
@@ -154,12 +154,12 @@ impl Target<'_> {
     /// since forces that add up over many bodies would enter one row after the other from 0.
     fn starts(&self, coarse: &mut Coarse, error: f64) -> Result<Vec<Vec<f64>>> {
         let mut starts = Vec::new();
-        if error > FAR {
+        if error > FAR && Rung::NoBounds.is_tried() {
             let free = self.y.iter().zip(self.held).map(|(y, held)| if *held { 0.0 } else { *y });
             let left = coarse.left(self.qp.e, &free.collect::<Vec<f64>>());
             starts.push(coarse.on(self.held)?.solve(&left)?);
         }
-        starts.extend(coarse.last_multiplier.clone());
+        starts.extend(coarse.last_multiplier.clone().filter(|_| Rung::LastMultiplier.is_tried()));
         Ok(starts)
     }
 

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::linalg::vector::norm;
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
-use crate::qp::{AcceptanceTest, Mended, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Mended, Rung, Solution, Verdict};
 use crate::solve::finish::{finish, Finished};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
@@ -110,7 +110,10 @@ impl<'a> Certifier<'a> {
         let mut alpha_at_rest = None;
         if !judgement.certificate.passed() {
             // a large motion that nothing resists may hide the other errors
-            let rested = recovery.at_rest(&recovered, x, &deformed)?;
+            let rested = match Rung::Rest.is_tried() {
+                true => recovery.at_rest(&recovered, x, &deformed)?,
+                false => None,
+            };
             let at_rest = rested.as_ref().map(|(rested, _)| recovery.judged(rested)).transpose()?;
             match (rested, at_rest.filter(|at_rest| at_rest.certificate.passed())) {
                 (Some((rested, amplitudes)), Some(at_rest)) => {

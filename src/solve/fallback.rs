@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::model::Settings;
 use crate::progress::Steps;
 use crate::qp::paper::algorithm_3;
-use crate::qp::{minimise, AcceptanceTest, Direct, Limits, Mended, Qp, Solution, Verdict};
+use crate::qp::{minimise, AcceptanceTest, Direct, Limits, Mended, Qp, Rung, Solution, Verdict};
 use crate::solve::paper;
 
 /// How the dual is solved.
@@ -37,7 +37,8 @@ pub fn solve_dual(
         return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, steps);
     }
     let mut solution = minimise(qp, start, limits, judge, steps)?;
-    if let Some(x) = on_faces(&mut solution, means.direct, judge, steps, true)? {
+    let inside = on_faces(&mut solution, means.direct, judge, steps, true)?;
+    if let Some(x) = inside.filter(|_| Rung::Again.is_tried()) {
         steps.line("the method starts again from the forces of an interior point".to_owned())?;
         let again = minimise(qp, &x, limits, judge, steps).and_then(|mut again| {
             on_faces(&mut again, means.direct, judge, steps, false)?;
@@ -58,7 +59,7 @@ fn on_faces(
     inside: bool,
 ) -> Result<Option<Vec<f64>>> {
     let is_incomplete = gave_up(solution) || solution.verdict == Verdict::StepLimit;
-    if !is_incomplete || direct.limit == 0 {
+    if !is_incomplete || direct.limit == 0 || !Rung::Faces.is_tried() {
         return Ok(None);
     }
     let why = match solution.verdict {

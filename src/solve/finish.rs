@@ -7,7 +7,7 @@ use crate::certificate::Certificate;
 use crate::error::{Kind, Result};
 use crate::model::{FinishBy, Method, Settings};
 use crate::platform::interrupt;
-use crate::qp::{Face, Verdict};
+use crate::qp::{Face, Rung, Verdict};
 use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::recovery::{Ending, Faces, Recovery};
 use crate::solve::slides::FAR;
@@ -35,7 +35,8 @@ pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending) -
     }
     let default = settings.method == Method::Proportioning && settings.finish == FinishBy::Automatic;
     let overlooked = ending.judgement.unevenness > UNEVEN;
-    settings.finish == FinishBy::Direct || default && (overlooked || is_delicate(recovery, ending))
+    settings.finish == FinishBy::Direct
+        || default && (overlooked || is_delicate(recovery, ending)) && Rung::Finish.is_tried()
 }
 
 /// The error of an answer may be much larger than its certificate: beside soft bodies, by rows that join uneven bodies, and where
@@ -106,7 +107,8 @@ impl<'a> Finish<'a, '_> {
         let Some(faces) = self.sparse()? else { return Ok(()) };
         let Some((active, inside)) = faces.inside(self.recovery)? else { return Ok(()) };
         for dense in [direct.limit, 0] {
-            if !self.passes() {
+            let rung = if dense > 0 { Rung::Interior } else { Rung::InteriorSparse };
+            if !self.passes() && rung.is_tried() {
                 self.follow(active.clone(), SplitPoint::inside(self.recovery, &inside), dense)?;
             }
         }
@@ -141,7 +143,7 @@ impl<'a> Finish<'a, '_> {
                 let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
                 let mut feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
                 self.correct(&mut point, FaceSolver::Dense(&feedback))?;
-                if feedback.face.is_truncated() {
+                if feedback.face.is_truncated() && Rung::AllRows.is_tried() {
                     feedback = Feedback::on(feedback.face.in_full()?, point.alpha.len(), &self.negative)?;
                     self.correct(&mut point, FaceSolver::Dense(&feedback))?;
                 }

@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::platform::{interrupt, threads};
 use crate::progress::{Steps, Stops, Voice};
 use crate::qp::paper::Units;
-use crate::qp::{Direct, Solution, Verdict};
+use crate::qp::{self, Direct, Rung, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::{Contradictions, Unheld};
@@ -79,7 +79,14 @@ pub fn solve_island(
     stops: &Stops,
     voice: &mut dyn Voice,
 ) -> Result<Solved> {
-    threads::with_team(case.threads(), || solve_held(case, number, start, stops, voice))
+    threads::with_team(case.threads(), || {
+        let (ended, tries) =
+            qp::during(case.model.settings.without as u64, || solve_held(case, number, start, stops, voice));
+        ended.map(|mut solved| {
+            solved.ending.solution.counts.tries = tries;
+            solved
+        })
+    })
 }
 
 fn solve_held(
@@ -127,7 +134,10 @@ fn solve_held(
                     return Err(error);
                 }
                 let share = least.share;
-                let relative = interrupt::part(DIAGNOSIS, || Unheld::relative(case, &dual, &far))?;
+                let relative = match Rung::Relative.is_tried() {
+                    true => interrupt::part(DIAGNOSIS, || Unheld::relative(case, &dual, &far))?,
+                    false => None,
+                };
                 let left = relative.filter(Unheld::is_little).unwrap_or(least);
                 dual.take(case, &left.x, left.load_to_take(share), share)?;
                 dual.along = left.amplitudes;
@@ -183,11 +193,13 @@ fn attempt(
         accuracy.data = case.model.accuracy_of_coordinates();
     }
     if goes_on && cleans && !recovery.friction {
-        if let Some(cleaned) = slides.without_noise(recovery, accuracy.data) {
+        let cleaned = slides.without_noise(recovery, accuracy.data);
+        if let Some(cleaned) = cleaned.filter(|_| Rung::Slides.is_tried()) {
             return Ok(Tried::Slides { cleaned, x: ending.solution.x, below: accuracy.data });
         }
     }
-    if goes_on && dual.cleaned.is_some() && !dual.excused && !ending.judgement.certificate.passed() {
+    let is_refused = !ending.judgement.certificate.passed();
+    if goes_on && dual.cleaned.is_some() && !dual.excused && is_refused && Rung::Leaves.is_tried() {
         return Ok(Tried::Leaves { x: ending.solution.x });
     }
     let is_solved = ending.solution.verdict == Verdict::Solved;

@@ -3,7 +3,7 @@
 //! without them.
 
 use crate::error::{Error, Kind, Result};
-use crate::qp::{Solution, Verdict};
+use crate::qp::{Rung, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Judged;
 use crate::solve::diagnosis::Unheld;
@@ -73,7 +73,9 @@ impl<'a> Near<'a> {
                 }
             }
             Verdict::Unbounded { .. } => {}
-            _ if gave_up(&solution) => drop(self.given_up.get_or_insert(solution)),
+            _ if gave_up(&solution) && Rung::FarRows.is_tried() => {
+                self.given_up.get_or_insert(solution);
+            }
             _ => return Ok(Next::Ended(solution)),
         }
         self.take_in_nearest();

@@ -16,7 +16,7 @@
 
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::vector::{axpy, dot, norm, NOISE};
-use crate::qp::{Qp, Solution, Verdict};
+use crate::qp::{Qp, Rung, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::feedback::{Feedback, NegativeMotions};
@@ -172,7 +172,11 @@ impl<'a> Search<'a, '_> {
         }
         if let Verdict::Infeasible { .. } = solution.verdict {
             let e = self.negative.resultants(self.qp.e, &step.b);
-            if let Some(motion) = self.unstopped(Qp { e: &e, ..self.qp }, &solution.x)? {
+            let unstopped = match Rung::FirstProof.is_tried() {
+                true => self.unstopped(Qp { e: &e, ..self.qp }, &solution.x)?,
+                false => None,
+            };
+            if let Some(motion) = unstopped {
                 return Err(indefinite(self.case, &motion.v, f64::INFINITY)?);
             }
         }
@@ -268,7 +272,8 @@ impl<'a> Search<'a, '_> {
 
     /// The next step: the Newton step to the fixed point of the face.
     fn settled(&self, round: &Round) -> Result<Step> {
-        let Some(feedback) = round.feedback.as_ref().filter(|feedback| feedback.rate() < 1.0) else {
+        let feedback = round.feedback.as_ref().filter(|feedback| feedback.rate() < 1.0);
+        let Some(feedback) = feedback.filter(|_| Rung::Trial.is_tried()) else {
             return Ok(Step { b: round.next.clone(), x: round.x.clone(), is_trial: false });
         };
         let b = feedback.settled(&round.next, &round.change);
@@ -281,6 +286,9 @@ impl<'a> Search<'a, '_> {
     /// trial `failed` went beyond the amplitudes of the round.
     fn back(&self, round: &Round, failed: &[f64]) -> Result<Step> {
         let plain = Step { b: round.next.clone(), x: round.x.clone(), is_trial: false };
+        if !Rung::Back.is_tried() {
+            return Ok(plain);
+        }
         if self.recovery.friction {
             let b: Vec<f64> = round.next.iter().zip(failed).map(|(next, b)| 0.5 * (next + b)).collect();
             let is_trial = norm(&minus(&b, &round.next)) > SHORT * norm(&round.change);

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::model::Settings;
 use crate::progress::Steps;
 use crate::qp::{
-    AcceptanceTest, Counts, DirectOnRows, Judged as OnRows, Mended, Qp, Restricted, Solution, Verdict,
+    AcceptanceTest, Counts, DirectOnRows, Judged as OnRows, Mended, Qp, Restricted, Rung, Solution, Verdict,
 };
 use crate::solve::case::Case;
 use crate::solve::certifier::{Assumed, Certifier, Judged};
@@ -35,7 +35,10 @@ pub fn solve_in_rounds<'a>(
     let (mut step, mut counts, mut last) =
         (Step::first(&negative, start.to_vec()), Counts::default(), None::<Solution>);
     loop {
-        let is_rough = !negative.modes.is_empty() && known.rounds == 0 && means.direct.limit > 0;
+        let is_rough = !negative.modes.is_empty()
+            && known.rounds == 0
+            && means.direct.limit > 0
+            && Rung::Rough.is_tried();
         judge.judged = Judged::default();
         judge.assumed = Assumed {
             far: near.far.clone(),
@@ -78,6 +81,7 @@ pub fn solve_in_rounds<'a>(
         };
         step = match next {
             Ok(Next::Step(next)) => next,
+            Ok(Next::Mend(next)) if !Rung::Mend.is_tried() => next,
             Ok(Next::Mend(next)) => {
                 let mended = judge.mended(&solution, true).and_then(|found| match found {
                     Mended::Accepted(mended) => {

@@ -7,8 +7,9 @@ use decks::hard::{self, proof, Ends, Given, Hard, MIXTURE, SECOND_MIXTURE};
 use decks::yardstick::{reaction, Answer, Yardstick};
 use decks::{second, Deck};
 use feti_contact::error::{Error, Kind, Proof, Result};
-use feti_contact::solver::{Outcome, Problem};
+use feti_contact::solver::{Outcome, Problem, Report};
 
+use crate::rungs::{self, Ended};
 use crate::varied::{answer, CONDITION};
 use crate::{hand_over, seeds};
 
@@ -159,13 +160,20 @@ pub fn judge(case: &Hard, ended: &std::result::Result<Outcome, Error>, found: Op
 }
 
 fn end(case: &Hard) -> End {
+    end_without(case, rungs::without()).0
+}
+
+/// Without the second tries of these bits, and the report.
+fn end_without(case: &Hard, without: i64) -> (End, Option<Report>) {
     let mut problem = match problem(&case.deck, case.given) {
         Ok(problem) => problem,
-        Err(error) => return refusal(case, &error),
+        Err(error) => return (refusal(case, &error), None),
     };
-    let ended = problem.solve().map(|report| report.outcome);
-    let found = ended.is_ok().then(|| answer(&problem));
-    judge(case, &ended, found.as_ref())
+    problem.set_i64("without", without).unwrap();
+    let solved = problem.solve();
+    let found = solved.is_ok().then(|| answer(&problem));
+    let ended = solved.as_ref().map(|report| report.outcome).map_err(Error::clone);
+    (judge(case, &ended, found.as_ref()), solved.ok())
 }
 
 fn short(name: &str) -> &str {
@@ -297,4 +305,18 @@ fn one_hard_problem_in_full() {
     println!("findings {:#?}", problem.findings());
     (0..case.deck.bodies.len()).for_each(|p| println!("{:?}", problem.body_facts(p)));
     println!("{}", line(seed, &case, &judge(&case, &ended, found.as_ref())));
+}
+
+/// `make rungs`.
+#[test]
+#[ignore]
+fn what_each_second_try_saves() {
+    let table = rungs::table(seeds(), |seed, without| {
+        let case = hard::mixed(seed, mixture());
+        let (End { verdict, .. }, report) = end_without(&case, without);
+        let wrong = matches!(verdict, Verdict::Wrong | Verdict::Refused | Verdict::FalseProof);
+        let solved = wrong || matches!(verdict, Verdict::Right | Verdict::Open);
+        (case.condition <= CONDITION && !case.blurred()).then_some(Ended { solved, wrong, report })
+    });
+    println!("{table}");
 }

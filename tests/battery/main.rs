@@ -11,6 +11,8 @@ mod history;
 mod marginal;
 mod modest;
 mod rounded;
+#[path = "../support/rungs.rs"]
+mod rungs;
 mod second;
 mod small;
 mod varied;

@@ -6,9 +6,10 @@ use std::fmt::Write;
 use decks::second;
 use decks::varied::{self, Varied, MIXTURE, SECOND_MIXTURE};
 use decks::yardstick::{Answer, Yardstick};
-use feti_contact::solver::{Outcome, Problem, RowKind};
+use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 
-use crate::{hand_over, mixture, some_seeds};
+use crate::rungs::{self, Ended};
+use crate::{hand_over, mixture, seeds, some_seeds};
 
 /// Number of problems of the ordinary run, one for this many of the others.
 const SHARE: u64 = 2;
@@ -38,18 +39,24 @@ pub fn answer(problem: &Problem) -> Answer {
 }
 
 fn end(case: &Varied) -> End {
+    end_without(case, rungs::without()).0
+}
+
+/// Without the second tries of these bits, and the report.
+fn end_without(case: &Varied, without: i64) -> (End, Option<Report>) {
     let failed = |error: feti_contact::error::Error| format!("{:?}: {error}", error.kind);
     let mut problem = match hand_over::problem(&case.deck) {
         Ok(problem) => problem,
-        Err(error) => return End { name: failed(error), error: None },
+        Err(error) => return (End { name: failed(error), error: None }, None),
     };
+    problem.set_i64("without", without).unwrap();
     let report = match problem.solve() {
         Ok(report) => report,
-        Err(error) => return End { name: failed(error), error: None },
+        Err(error) => return (End { name: failed(error), error: None }, None),
     };
     let solved = report.outcome == Outcome::Solved;
     let error = solved.then(|| error(case, &answer(&problem)));
-    End { name: format!("{:?}", report.outcome), error }
+    (End { name: format!("{:?}", report.outcome), error }, Some(report))
 }
 
 /// The worst error over what is allowed, with its body. The answer that a case was drawn with is that of its loads before these
@@ -135,4 +142,17 @@ fn every_varied_problem_that_is_solved_is_solved_rightly() {
     }
     let lines = wrong.iter().chain(&unsolved).take(LINES).cloned().collect::<Vec<_>>().join("\n");
     assert!(wrong.is_empty() && unsolved.len() <= allowed, "{table}{lines}");
+}
+
+/// `make rungs`.
+#[test]
+#[ignore]
+fn what_each_second_try_saves() {
+    let table = rungs::table(seeds(), |seed, without| {
+        let case = varied::mixed(seed, mixture());
+        let (End { error, .. }, report) = end_without(&case, without);
+        let wrong = error.is_some_and(|(error, _)| error > 1.0);
+        (case.condition <= CONDITION).then_some(Ended { solved: error.is_some(), wrong, report })
+    });
+    println!("{table}");
 }

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use feti_contact::error::{Error, Kind, Proof};
-use feti_contact::solver::{FrictionState, Outcome, Problem, RowKind};
+use feti_contact::solver::{FrictionState, Outcome, Problem, Report, RowKind};
 
 use crate::drawn::{case, Drawn, Known, Sizes, OTHER_SIZES, SIZES};
 use crate::enumeration::{self, Enumerated};
 use crate::hand_over;
 use crate::judge::{self, Answer};
+use crate::rungs::{self, Ended};
 
 /// Number of problems of the ordinary run and the seed of the first; the variables BATTERY, BATTERY_SEED and BATTERY_MIXTURE = 2,
 /// larger problems, ask for others.
@@ -59,9 +60,18 @@ enum End {
 }
 
 fn ended(drawn: &Drawn) -> (End, String) {
-    let solved = hand_over::problem(&drawn.deck)
-        .and_then(|mut problem| problem.solve().map(|report| (problem, report)));
-    match solved {
+    let (end, text, _) = ended_without(drawn, rungs::without());
+    (end, text)
+}
+
+/// Without the second tries of these bits, and the report.
+fn ended_without(drawn: &Drawn, without: i64) -> (End, String, Option<Report>) {
+    let solved = hand_over::problem(&drawn.deck).and_then(|mut problem| {
+        problem.set_i64("without", without)?;
+        problem.solve().map(|report| (problem, report))
+    });
+    let report = solved.as_ref().ok().map(|(_, report)| report.clone());
+    let (end, text) = match solved {
         Ok((problem, report)) if report.outcome == Outcome::Solved => {
             let (end, text) = of_answer(drawn, &problem);
             (end, format!("{text}, certificate {:.0e}", report.certificate.worst()))
@@ -77,7 +87,8 @@ fn ended(drawn: &Drawn) -> (End, String) {
             }
         }
         Err(error) => of_error(drawn, &error),
-    }
+    };
+    (end, text, report)
 }
 
 fn of_answer(drawn: &Drawn, problem: &Problem) -> (End, String) {
@@ -269,4 +280,17 @@ fn one_problem_in_full() {
         println!("slides {:?}", enumeration::slides(&drawn.deck));
     }
     println!("{:?}", ended(&drawn));
+}
+
+/// `make rungs`.
+#[test]
+#[ignore]
+fn what_each_second_try_saves() {
+    let first = asked("BATTERY_SEED").unwrap_or(FIRST);
+    let seeds = first..first + asked("BATTERY").unwrap_or(PROBLEMS);
+    let table = rungs::table(seeds, |seed, without| {
+        let (end, _, report) = ended_without(&case(seed, sizes()), without);
+        Some(Ended { solved: end != End::Unsolved, wrong: end == End::Wrong, report })
+    });
+    println!("{table}");
 }

@@ -9,6 +9,7 @@ use feti_contact::error::{Error, Kind, Proof};
 use feti_contact::solver::{FrictionState, Modes, Outcome, Problem};
 
 use crate::battery::answer;
+use crate::rungs::{self, Ended};
 use crate::{hand_over, judge};
 
 /// An answer is right if its worst error is below this part of what is there.
@@ -196,4 +197,29 @@ fn pressed_blocks_with_negative_stiffness_rest_or_are_proved_not_to() {
     assert!(lines.is_empty(), "{counts:?}\n{}", lines.join("\n"));
     let of = |end: &str| counts.get(end).copied().unwrap_or(0) as u64;
     assert!(of("OK") > all / 2 && 200 * of("Stalled") <= all, "{counts:?}");
+}
+
+/// `make rungs`: pressed blocks, every second one without friction.
+#[test]
+#[ignore]
+fn what_each_second_try_saves() {
+    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
+    let first: u64 = asked("BATTERY_SEED").unwrap_or(0);
+    let table = rungs::table(first..first + asked("BATTERY").unwrap_or(300), |seed, without| {
+        let mut deck = pressed(seed);
+        if seed % 2 == 1 {
+            deck.friction = Friction::none(deck.friction.dim, deck.dofs());
+        }
+        let mut problem = soft(&deck);
+        problem.set_i64("without", without).unwrap();
+        let (solved, wrong, report) = match problem.solve() {
+            Ok(report) if report.outcome == Outcome::Solved => {
+                (true, !(judge::worst(&deck, &answer(&problem)).0 <= RIGHT), Some(report))
+            }
+            Ok(report) => (false, false, Some(report)),
+            Err(error) => (true, !proves(&deck, &error), None),
+        };
+        Some(Ended { solved, wrong, report })
+    });
+    println!("{table}");
 }

@@ -12,6 +12,8 @@ mod idle;
 mod invariance;
 mod judge;
 mod last_iterations;
+#[path = "../support/rungs.rs"]
+mod rungs;
 mod slides;
 mod space;
 mod struck_out;

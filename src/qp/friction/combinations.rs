@@ -7,6 +7,7 @@ use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
 use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::path::{Solves, Way, LAST};
+use crate::qp::Rung;
 
 /// More combinations are not tried: five nodes in the plane have as many.
 const MOST: usize = 1024;
@@ -48,13 +49,20 @@ impl Run<'_, '_> {
     /// An answer by exactly solved systems: paths, then all combinations of states.
     pub fn densely(&mut self, dense: &Dense, start: &Point) -> Result<Option<Point>> {
         for relaxed in [0.0, 1.0] {
+            let rung = if relaxed == 0.0 { Rung::DensePath } else { Rung::DenseRelaxed };
+            if !rung.is_tried() {
+                continue;
+            }
             let way = Way { relaxed, last: LAST, solves: Solves::Dense(dense) };
             let now = self.along_path(start, way)?;
             if self.is_met(&now) {
                 return Ok(Some(now));
             }
         }
-        self.by_all_states(dense, start)
+        match Rung::Combinations.is_tried() {
+            true => self.by_all_states(dense, start),
+            false => Ok(None),
+        }
     }
 
     /// The answer with the least motion among all combinations of states; none if there is none, or if there are too many combinations.

@@ -9,7 +9,7 @@ use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::{
     FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
 };
-use crate::qp::{AcceptanceTest, Counts, Mended, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Mended, Rung, Solution, Verdict};
 
 /// Below this merit the answer may be as accurate as rounding allows.
 const NEAR: f64 = 1e-7;
@@ -106,7 +106,7 @@ impl<'a> Run<'a, '_> {
                 if met && refusal == refusals {
                     break;
                 }
-                if met {
+                if met && Rung::Tighter.is_tried() {
                     self.small *= TIGHTER;
                     now = self.newton(laws, answer)?;
                     continue;
@@ -128,7 +128,7 @@ impl<'a> Run<'a, '_> {
                 let answer = self.finished(&last)?;
                 self.accepted(&answer, corrects, judge)?
             }
-            false => corrects && self.corrected(&last, judge)?,
+            false => corrects && Rung::Corrected.is_tried() && self.corrected(&last, judge)?,
         };
         if solved {
             return Ok(Verdict::Solved);
@@ -143,7 +143,7 @@ impl<'a> Run<'a, '_> {
             self.last.clone_from(answer);
             return Ok(true);
         }
-        Ok(corrects && self.corrected(answer, judge)?)
+        Ok(corrects && Rung::Corrected.is_tried() && self.corrected(answer, judge)?)
     }
 
     /// Whether the point corrected by better data passes; then it is kept.
@@ -177,7 +177,7 @@ impl<'a> Run<'a, '_> {
         let turned = self.turned(&model, &x, &g, &now.alpha)?;
         let (as_is, turned) =
             (self.point(laws, x.clone(), g.clone(), now.alpha.clone())?, self.point(laws, x, g, turned)?);
-        Ok(if turned.merit < as_is.merit { turned } else { as_is })
+        Ok(if turned.merit < as_is.merit && Rung::Turned.is_tried() { turned } else { as_is })
     }
 
     fn solution(self, verdict: Verdict) -> FrictionSolution {

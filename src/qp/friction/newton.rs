@@ -9,7 +9,7 @@ use crate::qp::friction::face::{Face, Model, State};
 use crate::qp::friction::motions::{Inverse, Motions};
 use crate::qp::friction::pairs::{Pair, Pairs, Step};
 use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Slide, Tried};
-use crate::qp::Counts;
+use crate::qp::{Counts, Rung};
 
 /// The first rho: rows have the compliance `b K_d^-1 b' + C = 1`.
 pub const RHO: f64 = 0.2;
@@ -115,7 +115,7 @@ impl Run<'_, '_> {
     /// Steps to new faces with the existing pairs, while the merit falls.
     fn without_products(&mut self, laws: Laws, mut now: Point) -> Result<Point> {
         for _ in 0..INNER_STEPS {
-            if self.is_met(&now) {
+            if self.is_met(&now) || !Rung::Inner.is_tried() {
                 break;
             }
             let model = self.model(Face::at(laws.cones, &now.x, &now.r, laws.rho))?;

@@ -11,6 +11,7 @@ use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::path::{LONG, SHORT};
 use crate::qp::friction::slides::Shown;
 use crate::qp::friction::FrictionLimits;
+use crate::qp::Rung;
 
 /// A merit below this part of the scale is close to an answer: another rho, by this factor, may be enough.
 const FAR: f64 = 1e-3;
@@ -21,22 +22,27 @@ impl Run<'_, '_> {
     /// show spares what costs many products; rests beside it are sought by the others.
     pub fn otherwise(&mut self, limits: FrictionLimits, start: &Point, stalled: Point) -> Result<Point> {
         let mut now = stalled.clone();
-        if now.merit <= FAR * self.scale {
+        if now.merit <= FAR * self.scale && Rung::Restart.is_tried() {
             now = self.again(&now, OTHER * RHO)?;
         }
-        if !self.is_over(&now) {
+        if !self.is_over(&now) && Rung::ShortPath.is_tried() {
             now = self.along_path(start, SHORT)?;
         }
         if self.is_over(&now) {
             return Ok(now);
         }
-        let shown = self.with_supports(limits.tolerance, None)?;
+        let shown = match Rung::Supports.is_tried() {
+            true => self.with_supports(limits.tolerance, None)?,
+            false => Shown::Nothing,
+        };
         now = self.shown(shown)?.unwrap_or(now);
         if self.is_over(&now) {
             return Ok(now);
         }
-        now = self.sticking(start)?.unwrap_or(now);
-        if self.slide.is_none() && !self.is_over(&now) {
+        if Rung::Sticking.is_tried() {
+            now = self.sticking(start)?.unwrap_or(now);
+        }
+        if self.slide.is_none() && !self.is_over(&now) && Rung::LongPath.is_tried() {
             now = self.along_path(start, LONG)?;
         }
         if self.is_over(&now) {
@@ -51,7 +57,7 @@ impl Run<'_, '_> {
         let dense = dense.or_else(|error| if error.kind == Kind::Memory { Ok(None) } else { Err(error) })?;
         let Some(dense) = dense.flatten() else { return Ok(None) };
         let found = self.densely(&dense, start)?;
-        if found.is_some() || self.slide.is_some() {
+        if found.is_some() || self.slide.is_some() || !Rung::DenseSupports.is_tried() {
             return Ok(found);
         }
         let shown = self.with_supports(limits.tolerance, Some(&dense))?;

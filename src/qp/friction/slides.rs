@@ -14,6 +14,7 @@ use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::path::SHORT;
 use crate::qp::friction::supports::Supported;
 use crate::qp::friction::{FrictionLimits, FrictionProblem, FrictionStart, Slide};
+use crate::qp::Rung;
 
 /// Stiffness of the supports, no unit, the last one also the accuracy of their forces: rows have the compliance 1, the modes of a body `|G_p| = 1`.
 const STIFFEST: f64 = 1e-3;
@@ -55,7 +56,7 @@ impl Run<'_, '_> {
             let laws = Laws { cones: run.problem.cones, rho: RHO };
             let begun = run.begun(tolerance, &first, &vec![0.0; modes])?;
             let mut found = run.newton(laws, begun.clone())?;
-            if !run.is_met(&found) {
+            if !run.is_met(&found) && Rung::SupportPath.is_tried() {
                 found = match dense {
                     None => run.along_path(&begun, SHORT)?,
                     Some(dense) => run.densely(&dense.supported(modes, kappa)?, &begun)?.unwrap_or(found),

@@ -9,7 +9,7 @@ use crate::linalg::Csr;
 use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::interior::{self, Point};
-use crate::qp::{nearest_point, Polyhedron, Qp};
+use crate::qp::{nearest_point, Polyhedron, Qp, Rung};
 
 /// A correlation with the residual is zero if it is below this part of its terms.
 const ZERO: f64 = 1e-12;
@@ -107,7 +107,8 @@ fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
         }
         pressed.into_iter().for_each(|i| held[i] = false);
     }
-    let Point { force, motion, .. } = inside(qp, coarse, HARDLY_UNIQUE)?;
+    let by = if Rung::HardlyUnique.is_tried() { HARDLY_UNIQUE } else { UNIQUE };
+    let Point { force, motion, .. } = inside(qp, coarse, by)?;
     Ok((force, motion))
 }
 

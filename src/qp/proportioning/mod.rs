@@ -22,7 +22,9 @@ use crate::platform::interrupt;
 use crate::qp::between_solves::BetweenSolves;
 use crate::qp::coarse::Coarse;
 use crate::qp::projection::project;
-use crate::qp::{AcceptanceTest, Counts, Limits, Observer, Qp, Solution, StepKind, StepReport, Verdict};
+use crate::qp::{
+    AcceptanceTest, Counts, Limits, Observer, Qp, Rung, Solution, StepKind, StepReport, Verdict,
+};
 use balance::{balance, Balance};
 use iterate::Iterate;
 use steps::Step;
@@ -64,7 +66,7 @@ pub fn minimise(
     };
     // S6.3
     let mut it = Iterate::new(qp, coarse, first)?;
-    if is_warm && it.is_far_off() {
+    if is_warm && it.is_far_off() && Rung::Cold.is_tried() {
         if let Some(cold) = project(&qp, &mut it.coarse, &vec![0.0; start.len()], &vec![false; start.len()])?
         {
             it.x = cold.point;
@@ -85,7 +87,7 @@ fn infeasible(qp: &Qp, coarse: &Coarse, found: Balance) -> Solution {
 /// S6.1: the feasible point nearest to `start`, on the face of the zeros of `start` (its active set) if this face has
 /// one.
 fn first_point(qp: &Qp, coarse: &mut Coarse, start: &[f64]) -> Result<Option<Vec<f64>>> {
-    if start.iter().any(|x| *x != 0.0) {
+    if start.iter().any(|x| *x != 0.0) && Rung::Start.is_tried() {
         let zeros = qp.at_bound(start);
         if let Some(first) = project(qp, coarse, start, &zeros)? {
             return Ok(Some(first.point));

@@ -5,6 +5,7 @@ use crate::linalg::vector::{axpy, dot, norm};
 use crate::qp::gradient::feasible_step;
 use crate::qp::projection::project;
 use crate::qp::proportioning::iterate::Iterate;
+use crate::qp::Rung;
 
 /// Curvature counts as zero below this part of L.
 const SINGULAR: f64 = 1e-11;
@@ -53,10 +54,12 @@ impl Iterate<'_> {
     /// length.
     pub fn explore(&mut self) -> Result<Step> {
         let p = self.direction()?;
-        let to_bound = self.cuts == CUTS;
+        let to_bound = self.cuts == CUTS && Rung::ToBound.is_tried();
         self.cuts %= CUTS;
         // P4: projection before the product
-        let far = self.expected.filter(|t| !to_bound && self.feasible_step(&p, 0.0) < *t);
+        let far = self
+            .expected
+            .filter(|t| !to_bound && self.feasible_step(&p, 0.0) < *t && Rung::ProjectedFirst.is_tried());
         let step = match far {
             Some(t) if self.expand(&p, t)? => Step::Expansion,
             _ => self.step_along(p, to_bound)?,
@@ -89,7 +92,7 @@ impl Iterate<'_> {
         if !self.kept.is_empty() {
             let mut p = z.clone();
             self.kept.make_conjugate(&mut p);
-            if norm(&p) < CANCELLED * norm(&z) {
+            if norm(&p) < CANCELLED * norm(&z) && Rung::Reproject.is_tried() {
                 self.project_on_face(&mut p)?;
             }
             if norm(&p) > LOST * norm(&z) && dot(&self.r, &p) > 0.0 {
@@ -226,7 +229,11 @@ impl Iterate<'_> {
     /// P9, and P10 after a cut or if P9 does not lead downwards: active rows with a negative multiplier leave the active
     /// set. `small`: length below which a projected gradient counts as zero.
     pub fn proportion(&mut self, small: f64) -> Result<Step> {
-        let step = if std::mem::take(&mut self.cuts) > 0 { None } else { self.free_pulling(small)? };
+        let step = if std::mem::take(&mut self.cuts) > 0 || !Rung::PullAll.is_tried() {
+            None
+        } else {
+            self.free_pulling(small)?
+        };
         let step = step.map_or_else(|| self.project_gradient(small), Ok)?;
         self.counts.releases += usize::from(matches!(step, Step::Proportioning));
         self.settle()?;
@@ -284,7 +291,7 @@ impl Iterate<'_> {
         let mut alpha = self.alpha.clone();
         axpy(1.0 / step, &projected.multiplier, &mut alpha);
         self.projections += 1;
-        if self.projections > PROJECTIONS {
+        if self.projections > PROJECTIONS && Rung::Reference.is_tried() {
             self.reference = Some(alpha.clone());
         }
         if norm(&s) <= small * step {

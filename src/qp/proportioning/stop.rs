@@ -2,7 +2,7 @@
 
 use crate::linalg::vector::norm;
 use crate::qp::proportioning::iterate::Iterate;
-use crate::qp::Verdict;
+use crate::qp::{Rung, Verdict};
 
 /// The scale is dominated by rigid travel if it exceeds the scale without travel by this factor.
 const TRAVEL: f64 = 10.0;
@@ -53,14 +53,14 @@ impl Stop {
             self.face.clone_from(&it.split.active);
         }
         let unknowns = it.split.active.iter().filter(|active| !**active).count();
-        steps - self.met > (2 * unknowns + 20).min(PLATEAU)
+        steps - self.met > (2 * unknowns + 20).min(PLATEAU) && Rung::Plateau.is_tried()
     }
 
     /// P1.2: once, if the scale is dominated by rigid travel: from now on the residual is relative to the scale without
     /// travel.
     pub fn refine(&mut self, tolerance: f64, length: Option<f64>) -> bool {
         let target = length.map_or(f64::INFINITY, |length| tolerance * length);
-        let refines = !self.refined && TRAVEL * target < self.residual;
+        let refines = !self.refined && TRAVEL * target < self.residual && Rung::Refine.is_tried();
         if refines {
             self.residual = target;
         }
@@ -77,7 +77,8 @@ impl Stop {
     /// P1.4: tightens by the reported violation at the first two refusals; false if steps cannot correct a violation of
     /// this size.
     pub fn tighten_by(&mut self, missed: Option<f64>) -> bool {
-        let missed = missed.filter(|missed| *missed < MISSED && self.tightenings < 2);
+        let missed =
+            missed.filter(|missed| *missed < MISSED && self.tightenings < 2 && Rung::TightenBy.is_tried());
         if let Some(missed) = missed {
             self.tightenings += 1;
             self.residual *= (0.4 / missed).min(0.4);
@@ -91,7 +92,7 @@ impl Stop {
         if accepted {
             return Some(Verdict::Solved);
         }
-        if self.tightenings == TIGHTENINGS {
+        if self.tightenings == TIGHTENINGS || !Rung::Tighten.is_tried() {
             return Some(Verdict::Inaccurate);
         }
         self.tightenings += 1;

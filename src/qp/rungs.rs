@@ -1,0 +1,131 @@
+//! The second tries of a solve. Each has a name, is counted, and can be left out (option `without`), which shows what it saves.
+
+use std::cell::Cell;
+
+/// Makes the list of second tries: name, where it stands, what is tried.
+macro_rules! rungs {
+    ($($rung:ident: $name:literal, $what:literal;)+) => {
+        /// A second try; its number is its bit in option `without`.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Rung {
+            $(#[doc = $what] $rung,)+
+        }
+
+        impl Rung {
+            /// Name and meaning of each.
+            pub const ALL: &[(Self, &str, &str)] = &[$((Self::$rung, $name, $what),)+];
+        }
+    };
+}
+
+rungs! {
+    Start: "first face", "S6.1: a warm start's own face is tried first";
+    Cold: "cold start", "S6.3: a start far off is discarded";
+    HardlyUnique: "less regularised", "S6.2: the interior point method with less regularisation";
+    LastMultiplier: "last multiplier", "J1: a projection starts from the multiplier of the last one";
+    NoBounds: "without bounds", "J1: a projection starts from the multiplier without bounds";
+    ProjectionInside: "projection inside", "J3: an interior point method after short steps of a projection";
+    Fit: "fitted again", "S8: the least-squares multiplier is refined";
+    SparseInverse: "sparse inverse", "S8: free motions by the sparse factor before dense parts";
+    Plateau: "plateau", "P1: the answer is judged where the residual stays";
+    Refine: "refined", "P1.2: the target without rigid travel";
+    TightenBy: "tightened by", "P1.4: the target by the violation reported";
+    Tighten: "tightened", "P1.5: a tenth of the target";
+    Reproject: "projected again", "P3: a nearly cancelled direction is projected again";
+    ProjectedFirst: "projected first", "P4: a step expected to leave the bounds is projected before its product";
+    ToBound: "to the bound", "P6: a step up to the bound after short projected steps";
+    PullAll: "all pulling", "P9: all rows with a negative multiplier leave at once, before P10";
+    Reference: "last motions", "P10: free motions of the last gradient projection";
+    Faces: "faces", "S10: faces by the data of the host where the iteration gives up";
+    Interior: "interior point", "S13.6: faces from an interior point, dense";
+    InteriorSparse: "interior point, sparse", "S13.6: the same with sparse factors";
+    AllRows: "all rows", "S13: the face with rows that nearly depend on others";
+    Again: "again", "S10: the iteration again from an interior point";
+    Lost: "lost motion", "S9: what a soft K+ has lost is added";
+    Rest: "judged at rest", "S9: a refused answer is judged at rest";
+    Slides: "slides", "S12: resistance that is noise is taken out";
+    Leaves: "left load", "S12: what forces then leave of the load is taken out";
+    Relative: "relative shares", "S11: unheld parts by shares of each body";
+    FarRows: "far rows", "S5.2: far rows join because no answer passes";
+    Rough: "rough round", "S7: a rough first round with negative stiffness";
+    Trial: "trial", "S7: Newton steps between rounds";
+    Back: "back", "S7: back to the last round after a trial";
+    Mend: "mended", "S7.6: an answer of a round is corrected";
+    FirstProof: "first proof", "S7: loads that fall without end, in a round without an answer";
+    Finish: "finish", "S13: delicate answers are corrected";
+    Inner: "steps without product", "F4: steps to new faces with the pairs at hand";
+    Turned: "turned", "F6: amplitudes fitted once more at the end";
+    Restart: "rho x 5", "F7.1: another rho";
+    ShortPath: "short path", "F7.2: smoothed laws until the states are known";
+    Supports: "weak supports", "F7.3: weak supports with kept pairs";
+    SupportPath: "path on supports", "F7.3: a path where Newton's method fails on supports";
+    Sticking: "all sticking", "F7.4: from the answer in which all closed nodes stick";
+    LongPath: "long path", "F7.5: the path to rounding with relaxed bounds";
+    DensePath: "dense path", "F7.6: dense systems along the smoothed laws";
+    DenseRelaxed: "dense path, relaxed", "F7.6: the same with relaxed bounds";
+    Combinations: "combinations", "F7.6: all combinations of states";
+    DenseSupports: "dense supports", "F7.6: weak supports with dense systems";
+    Tighter: "tighter laws", "F8: a smaller merit for a refused point";
+    Corrected: "corrected", "F8: a refused point is corrected by the data of the host";
+}
+
+const COUNT: usize = Rung::ALL.len();
+
+/// How often each second try was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tries([u32; COUNT]);
+
+impl Default for Tries {
+    fn default() -> Self {
+        Self([0; COUNT])
+    }
+}
+
+impl std::ops::Add for Tries {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k].saturating_add(other.0[k])))
+    }
+}
+
+impl Tries {
+    /// Names and numbers of the second tries made.
+    pub fn made(&self) -> impl Iterator<Item = (&'static str, u32)> + '_ {
+        Rung::ALL.iter().map(|(rung, name, _)| (*name, self.0[*rung as usize])).filter(|made| made.1 > 0)
+    }
+}
+
+thread_local! {
+    /// What is left out, and what was tried so far, by the solve of this thread.
+    static PRESENT: Cell<(u64, Tries)> = const { Cell::new((0, Tries([0; COUNT]))) };
+}
+
+/// Runs a solve without the second tries of these bits; what it tried.
+pub fn during<T>(without: u64, work: impl FnOnce() -> T) -> (T, Tries) {
+    let _before = Restore(PRESENT.replace((without, Tries::default())));
+    let done = work();
+    (done, PRESENT.get().1)
+}
+
+/// When dropped, also after a panic, it restores the solve that called the host whose function has begun another.
+struct Restore((u64, Tries));
+
+impl Drop for Restore {
+    fn drop(&mut self) {
+        PRESENT.set(self.0);
+    }
+}
+
+impl Rung {
+    /// Counts this try, unless it is left out.
+    pub fn is_tried(self) -> bool {
+        let (without, mut tries) = PRESENT.get();
+        let is_tried = without >> self as u32 & 1 == 0;
+        if is_tried {
+            tries.0[self as usize] = tries.0[self as usize].saturating_add(1);
+            PRESENT.set((without, tries));
+        }
+        is_tried
+    }
+}
