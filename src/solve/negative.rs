@@ -190,18 +190,12 @@ impl<'a> Search<'a, '_> {
 
     /// The motion along which forces x leave a load that none hold, if the energy falls along it without end.
     fn unstopped(&self, qp: Qp, x: &[f64]) -> Result<Option<Sliding>> {
-        let (ready, scaled, bounded) = (self.case.ready, self.recovery.scaled, qp.bounded);
-        if !self.recovery.friction {
-            let motion = Sliding::of(self.recovery, vec![0.0; x.len()], qp.left(x))?;
-            let stops = |motion: &Sliding| motion.reach(self.recovery, &vec![0.0; motion.v.len()], bounded);
-            let falls = motion.falls(self.recovery, bounded)? && stops(&motion).is_infinite();
-            return Ok(falls.then_some(motion));
-        }
+        let (ready, scaled) = (self.case.ready, self.recovery.scaled);
         let (rows, sizes) = ((0..x.len()).collect::<Vec<_>>(), ready.dual.sizes_of_modes());
         let (_, rest) = nearest_forces(ready, qp, &scaled.gaps, &rows, &sizes)?;
         let left = rest.iter().zip(&sizes).map(|(e, size)| size * size * e).collect();
         let motion = Sliding::of(self.recovery, vec![0.0; x.len()], left)?;
-        Ok(motion.falls_beside_friction(self.recovery)?.then_some(motion))
+        Ok(motion.falls_beside_forces(self.recovery)?.then_some(motion))
     }
 
     fn round(&self, step: &Step, (solution, held): (&Solution, Vec<bool>)) -> Result<Round<'a>> {

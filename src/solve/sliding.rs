@@ -48,11 +48,20 @@ impl Sliding {
         slips.into_iter().all(|i| x[i].signum() * rows.row_dot(i, &self.v) >= -STILL * self.size(rows, i))
     }
 
-    /// `v'K v < 0` by the matrices of the host, and no forces within the cones of the rows resist v.
-    pub fn falls_beside_friction(&self, recovery: &Recovery) -> Result<bool> {
-        let (energy, terms) = self.energy(recovery)?;
+    /// `v'K v < 0` by the matrices of the host, by more than the rounding of their entries, and no forces within the cones of the rows
+    /// resist v.
+    pub fn falls_beside_forces(&self, recovery: &Recovery) -> Result<bool> {
+        let unit = recovery.ready.island.unit;
+        let mut entries = 0.0;
+        for body in &recovery.data.bodies {
+            let v = &self.v[body.range()];
+            let (mut image, mut terms) = (zeros(v.len(), WHAT)?, zeros(v.len(), WHAT)?);
+            body.stiffness.mul_with_terms(v, &mut image, &mut terms)?;
+            entries += v.iter().zip(terms).map(|(v, terms)| v.abs() * terms / unit).sum::<f64>();
+        }
         let size = weighted_norm(&self.v, |j| recovery.ready.rows.metric[j]);
-        Ok(energy.value() < -NOISE * terms && resistance(recovery.ready, &self.v) <= CLOSED * size)
+        let falls = self.energy(recovery)?.0.value() < -NOISE * entries;
+        Ok(falls && resistance(recovery.ready, &self.v) <= CLOSED * size)
     }
 
     /// `v'K v` and the size of its terms, in units of 2^p.

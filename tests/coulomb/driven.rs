@@ -199,6 +199,19 @@ fn pressed_blocks_with_negative_stiffness_rest_or_are_proved_not_to() {
     assert!(of("OK") > all / 2 && 200 * of("Stalled") <= all, "{counts:?}");
 }
 
+/// The same blocks without friction: nothing holds the push. The reason was once negative stiffness along a motion whose v'K v is rounding.
+#[test]
+fn pushed_blocks_without_friction_are_named_with_a_motion_that_proves_it() {
+    for seed in 0..200 {
+        let mut deck = pressed(111000000 + seed);
+        deck.friction = Friction::none(deck.friction.dim, deck.dofs());
+        match soft(&deck).solve() {
+            Err(error) => assert!(proves(&deck, &error), "{seed}: {error}"),
+            Ok(report) => assert_ne!(report.outcome, Outcome::Solved, "{seed}"),
+        }
+    }
+}
+
 /// `make rungs`: pressed blocks, every second one without friction.
 #[test]
 #[ignore]
