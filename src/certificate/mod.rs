@@ -131,8 +131,6 @@ pub struct Judgement {
     pub contact: Vec<RowJudgement>,
     /// One per node with friction.
     pub nodes: Vec<FrictionState>,
-    /// `|S L|` over all rows, (force x length)^1/2: the lengths to which gaps are relative, without rigid travel.
-    pub length: f64,
     /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body or of a grounded unknown, no unit: the certificate cannot detect
     /// relative errors of a deformation below this multiple of tol.
     pub leverage: f64,
@@ -194,11 +192,11 @@ pub fn certify(data: &Data, answer: Candidate) -> Result<Judgement> {
     let travelled = certificate.passed() && lost.ratio > 1.0;
     certificate.equilibrium.replace_if_worse(lost);
     let bodies = rows.force_errors(&field);
-    let (length, leverage) = (rows.length(&field), forces.leverage);
+    let leverage = forces.leverage;
     let unevenness = rows.unevenness();
     let nodes = rows.states();
     let contact = rows.limits();
-    Ok(Judgement { certificate, travelled, bodies, contact, nodes, length, leverage, unevenness })
+    Ok(Judgement { certificate, travelled, bodies, contact, nodes, leverage, unevenness })
 }
 
 /// `(x)_+`; NaN stays NaN.

@@ -18,13 +18,12 @@ pub(super) struct JudgedRow {
     pub slipping: f64,
     /// `|lambda_i| / s_i^2`, length: the gap that an error as large as the force would cause.
     given_way: f64,
-    /// `s_i (|b_i| delta + |lambda_i| / s_i^2) / U^1/2` with the deformation of its own unknowns alone, length.
-    pub weighed: f64,
     /// Gaps below this count as zero, length; NaN for a row without scale.
     pub gap_limit: f64,
     /// Forces below this count as zero, force.
     pub force_limit: f64,
-    /// `weighed` divided by the smallest deformation among the bodies that the row touches, no unit; 0 without force.
+    /// `s_i (|b_i| delta + |lambda_i| / s_i^2) / U^1/2` with the deformation of its own unknowns alone, divided by the smallest
+    /// deformation among the bodies that the row touches, no unit; 0 without force.
     pub unevenness: f64,
 }
 
@@ -60,7 +59,7 @@ impl JudgedRow {
         let closed = force.abs() > force_limit;
         let unevenness = if closed { ratio(weighed, forces.least_deformation(field, kind, i)) } else { 0.0 };
         let slipping = 0.0;
-        Self { kind, force, open, slipping, given_way, weighed, gap_limit, force_limit, unevenness }
+        Self { kind, force, open, slipping, given_way, gap_limit, force_limit, unevenness }
     }
 
     /// `(b_i u - c_i - C_i lambda_i)_+`, or the error of an equality row, relative to its limit; no unit.

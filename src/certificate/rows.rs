@@ -65,12 +65,6 @@ impl Measured {
         self.rows[0].iter().map(|row| RowJudgement { gap: row.gap_limit, force: row.force_limit }).collect()
     }
 
-    /// `|S L|` over all rows with the deformation of their own unknowns alone, (force x length)^1/2.
-    pub fn length(&self, field: &Field) -> f64 {
-        let all: Vec<f64> = self.rows.iter().flatten().map(|row| row.weighed).collect();
-        weighted_norm(&all, |_| 1.0) * field.unit.sqrt()
-    }
-
     /// `eta_p = |S v|_p / |S^-1 lambda|_p` of every body; both in units of force.
     pub fn force_errors(&self, field: &Field) -> Vec<BodyJudgement> {
         let mut parts = vec![(Vec::new(), Vec::new()); field.data.bodies.len()];

@@ -35,10 +35,6 @@ pub trait AcceptanceTest {
     fn mended(&mut self, _: &Solution, _inside: bool) -> Result<Mended> {
         Ok(Mended::Failed)
     }
-    /// The scale without rigid travel, at the last accepted point; none before, or if the test does not compute it.
-    fn length(&self) -> Option<f64> {
-        None
-    }
 }
 
 /// What correction by better data has found.

@@ -27,8 +27,6 @@ pub struct Coarse<'a> {
     left_free: bool,
     /// The face of all rows, and the last other face.
     faces: [Option<CoarseFace>; 2],
-    /// Multiplier of `G l = e` in the last projection on the polyhedron.
-    pub last_multiplier: Option<Vec<f64>>,
     pub solves: usize,
     pub factorisations: usize,
 }
@@ -68,7 +66,6 @@ impl<'a> Coarse<'a> {
             kept: None,
             left_free: false,
             faces: [None, None],
-            last_multiplier: None,
             solves: 0,
             factorisations: 0,
         }

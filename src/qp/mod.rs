@@ -95,8 +95,6 @@ pub struct Counts {
     /// Newton steps for friction, and number of starts.
     pub newton: usize,
     pub starts: usize,
-    /// Second tries.
-    pub tries: Tries,
 }
 
 impl std::ops::Add for Counts {
@@ -115,7 +113,6 @@ impl std::ops::Add for Counts {
             outer: self.outer + other.outer,
             newton: self.newton + other.newton,
             starts: self.starts + other.starts,
-            tries: self.tries + other.tries,
         }
     }
 }

@@ -81,7 +81,6 @@ impl Trial {
     fn done(self, qp: &Qp, coarse: &mut Coarse) -> Result<Projected> {
         let mut point = self.point.clone();
         let held: Vec<bool> = point.iter().map(|l| *l == 0.0).collect();
-        coarse.last_multiplier = Some(self.beta.clone());
         let step = coarse.on(&held)?.solve(&self.residual)?;
         let rows = coarse.rows();
         rows.change_rows(&mut point, |i, l| {
@@ -102,7 +101,8 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         return Ok(Some(Projected { point: now.point, multiplier: now.beta }));
     }
     let mut error = now.error(qp, coarse);
-    for beta in target.starts(coarse, error)? {
+    if error > FAR && Rung::NoBounds.is_tried() {
+        let beta = target.without_bounds(coarse)?;
         let next = Trial::new(target, coarse, beta);
         if next.phi(qp) < now.phi(qp) {
             (error, now) = (next.error(qp, coarse), next);
@@ -150,17 +150,11 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
 }
 
 impl Target<'_> {
-    /// J1: start multipliers other than 0: that of the last projection and, if 0 is far from e, that without bounds,
-    /// since forces that add up over many bodies would enter one row after the other from 0.
-    fn starts(&self, coarse: &mut Coarse, error: f64) -> Result<Vec<Vec<f64>>> {
-        let mut starts = Vec::new();
-        if error > FAR && Rung::NoBounds.is_tried() {
-            let free = self.y.iter().zip(self.held).map(|(y, held)| if *held { 0.0 } else { *y });
-            let left = coarse.left(self.qp.e, &free.collect::<Vec<f64>>());
-            starts.push(coarse.on(self.held)?.solve(&left)?);
-        }
-        starts.extend(coarse.last_multiplier.clone().filter(|_| Rung::LastMultiplier.is_tried()));
-        Ok(starts)
+    /// J1: the multiplier without bounds, since forces that add up over many bodies would enter one row after the other from 0.
+    fn without_bounds(&self, coarse: &mut Coarse) -> Result<Vec<f64>> {
+        let free = self.y.iter().zip(self.held).map(|(y, held)| if *held { 0.0 } else { *y });
+        let left = coarse.left(self.qp.e, &free.collect::<Vec<f64>>());
+        coarse.on(self.held)?.solve(&left)
     }
 
     /// J3: exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and nondecreasing, with the slope

@@ -157,10 +157,6 @@ impl AcceptanceTest for Judged<'_> {
         self.whole.has_better_data()
     }
 
-    fn length(&self) -> Option<f64> {
-        self.whole.length()
-    }
-
     fn mended(&mut self, solution: &Solution, inside: bool) -> Result<Mended> {
         Ok(match self.whole.mended(&self.on.whole(solution.clone()), inside)? {
             Mended::Accepted(mended) => self.on.part(mended).map_or(Mended::Failed, Mended::Accepted),

@@ -22,18 +22,15 @@ rungs! {
     Start: "first face", "S6.1: a warm start's own face is tried first";
     Cold: "cold start", "S6.3: a start far off is discarded";
     HardlyUnique: "less regularised", "S6.2: the interior point method with less regularisation";
-    LastMultiplier: "last multiplier", "J1: a projection starts from the multiplier of the last one";
     NoBounds: "without bounds", "J1: a projection starts from the multiplier without bounds";
     ProjectionInside: "projection inside", "J3: an interior point method after short steps of a projection";
     Fit: "fitted again", "S8: the least-squares multiplier is refined";
     SparseInverse: "sparse inverse", "S8: free motions by the sparse factor before dense parts";
     Plateau: "plateau", "P1: the answer is judged where the residual stays";
-    Refine: "refined", "P1.2: the target without rigid travel";
-    TightenBy: "tightened by", "P1.4: the target by the violation reported";
-    Tighten: "tightened", "P1.5: a tenth of the target";
+    TightenBy: "tightened by", "P1.3: the target by the violation reported";
+    Tighten: "tightened", "P1.4: a tenth of the target";
     Reproject: "projected again", "P3: a nearly cancelled direction is projected again";
     ProjectedFirst: "projected first", "P4: a step expected to leave the bounds is projected before its product";
-    ToBound: "to the bound", "P6: a step up to the bound after short projected steps";
     PullAll: "all pulling", "P9: all rows with a negative multiplier leave at once, before P10";
     Reference: "last motions", "P10: free motions of the last gradient projection";
     Faces: "faces", "S10: faces by the data of the host where the iteration gives up";
@@ -41,8 +38,6 @@ rungs! {
     InteriorSparse: "interior point, sparse", "S13.6: the same with sparse factors";
     AllRows: "all rows", "S13: the face with rows that nearly depend on others";
     Again: "again", "S10: the iteration again from an interior point";
-    Lost: "lost motion", "S9: what a soft K+ has lost is added";
-    Rest: "judged at rest", "S9: a refused answer is judged at rest";
     Slides: "slides", "S12: resistance that is noise is taken out";
     Leaves: "left load", "S12: what forces then leave of the load is taken out";
     Relative: "relative shares", "S11: unheld parts by shares of each body";
@@ -55,12 +50,11 @@ rungs! {
     Finish: "finish", "S13: delicate answers are corrected";
     Inner: "steps without product", "F4: steps to new faces with the pairs at hand";
     Turned: "turned", "F6: amplitudes fitted once more at the end";
-    Restart: "rho x 5", "F7.1: another rho";
     ShortPath: "short path", "F7.2: smoothed laws until the states are known";
     Supports: "weak supports", "F7.3: weak supports with kept pairs";
     SupportPath: "path on supports", "F7.3: a path where Newton's method fails on supports";
     Sticking: "all sticking", "F7.4: from the answer in which all closed nodes stick";
-    LongPath: "long path", "F7.5: the path to rounding with relaxed bounds";
+    LongPath: "long path", "F7: the path to rounding with relaxed bounds";
     DensePath: "dense path", "F7.6: dense systems along the smoothed laws";
     DenseRelaxed: "dense path, relaxed", "F7.6: the same with relaxed bounds";
     Combinations: "combinations", "F7.6: all combinations of states";
@@ -127,5 +121,28 @@ impl Rung {
             PRESENT.set((without, tries));
         }
         is_tried
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_solve_counts_its_own_tries_and_leaves_out_what_it_is_told_to_leave_out() {
+        let (_, outer) = during(0, || {
+            assert!(Rung::Faces.is_tried() && Rung::Again.is_tried());
+            let (inner, tries) =
+                during(1 << Rung::Faces as u32, || [Rung::Faces, Rung::Again].map(Rung::is_tried));
+            assert_eq!((inner, tries.made().collect::<Vec<_>>()), ([false, true], vec![("again", 1)]));
+            assert!(Rung::Faces.is_tried());
+        });
+        assert_eq!((outer + outer).made().collect::<Vec<_>>(), [("faces", 4), ("again", 2)]);
+    }
+
+    #[test]
+    fn every_second_try_has_a_bit_of_its_own_within_the_range_of_the_option() {
+        assert!(COUNT <= 53);
+        Rung::ALL.iter().enumerate().for_each(|(k, (rung, ..))| assert_eq!(*rung as usize, k));
     }
 }

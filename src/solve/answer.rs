@@ -110,7 +110,7 @@ impl Answer {
 
     /// Adds the answer of an island and its work counts.
     fn take_in(&mut self, model: &Model, ready: &Ready, solved: Solved) {
-        let Solved { ending, outcome, finished, unheld, slide, .. } = solved;
+        let Solved { ending, outcome, finished, unheld, slide, tries, .. } = solved;
         let Ending { solution, recovered, judgement, .. } = ending;
         let island = &ready.island;
         let states = states(ready, &recovered, &judgement.contact);
@@ -139,6 +139,7 @@ impl Answer {
             report.slide = Some(Slide { body: model.name(island.bodies[slide.body]), ..slide });
         }
         report.counts = report.counts + solution.counts;
+        report.tries = report.tries + tries;
         let scale = solution.scale * island.unit.sqrt();
         report.gap_scale = report.gap_scale.hypot(scale);
     }

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::linalg::vector::norm;
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
-use crate::qp::{AcceptanceTest, Mended, Rung, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Mended, Solution, Verdict};
 use crate::solve::finish::{finish, Finished};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
@@ -56,11 +56,9 @@ pub struct Certifier<'a> {
 /// Amplitudes of motions with negative stiffness have settled if they differ by less.
 const SETTLED: f64 = 1e-11;
 
-/// A point (x, alpha) of the dual problem whose answer has passed, and the amplitudes of that answer if it was brought to
-/// rest.
+/// A point (x, alpha) of the dual problem whose answer has passed.
 struct Accepted {
     point: (Vec<f64>, Vec<f64>),
-    alpha_at_rest: Option<Vec<f64>>,
     deformed: Vec<f64>,
     recovered: Recovered,
     judgement: Judgement,
@@ -73,11 +71,10 @@ impl<'a> Certifier<'a> {
     }
 
     /// The answer of a solution; the answer of the point accepted last is not computed again.
-    pub fn ending(&mut self, mut solution: Solution) -> Result<Ending> {
+    pub fn ending(&mut self, solution: Solution) -> Result<Ending> {
         let known = self.accepted.take();
         let known = known.filter(|known| known.point.0 == solution.x && known.point.1 == solution.alpha);
-        if let Some(Accepted { alpha_at_rest, deformed, recovered, judgement, .. }) = known {
-            solution.alpha = alpha_at_rest.unwrap_or(solution.alpha);
+        if let Some(Accepted { deformed, recovered, judgement, .. }) = known {
             return Ok(Ending { solution, deformed, recovered, judgement });
         }
         self.recovery.ending(solution)
@@ -105,35 +102,21 @@ impl<'a> Certifier<'a> {
     fn judge(&mut self, x: &[f64], alpha: &[f64]) -> Result<Judged> {
         let recovery = &self.recovery;
         let deformed = recovery.deformed(x)?;
-        let mut recovered = recovery.recover(&deformed, x, alpha);
-        let mut judgement = recovery.judged(&recovered)?;
-        let mut alpha_at_rest = None;
+        let recovered = recovery.recover(&deformed, x, alpha);
+        let judgement = recovery.judged(&recovered)?;
         if !judgement.certificate.passed() {
-            // a large motion that nothing resists may hide the other errors
-            let rested = match Rung::Rest.is_tried() {
-                true => recovery.at_rest(&recovered, x, &deformed)?,
-                false => None,
-            };
-            let at_rest = rested.as_ref().map(|(rested, _)| recovery.judged(rested)).transpose()?;
-            match (rested, at_rest.filter(|at_rest| at_rest.certificate.passed())) {
-                (Some((rested, amplitudes)), Some(at_rest)) => {
-                    (recovered, judgement, alpha_at_rest) = (rested, at_rest, Some(amplitudes));
-                }
-                (rested, _) => {
-                    let reached = self.beyond(&rested.map_or(recovered, |(rested, _)| rested).u);
-                    self.missed = Some(judgement.certificate.worst());
-                    return Ok(match reached.is_empty() {
-                        // violated rows join first: without them no other improvement helps
-                        false => Judged::RowsReached(reached),
-                        true if self.differ(alpha) => Judged::AmplitudesMoved,
-                        true => Judged::Missed,
-                    });
-                }
-            }
+            let reached = self.beyond(&recovered.u);
+            self.missed = Some(judgement.certificate.worst());
+            return Ok(match reached.is_empty() {
+                // violated rows join first: without them no other improvement helps
+                false => Judged::RowsReached(reached),
+                true if self.differ(alpha) => Judged::AmplitudesMoved,
+                true => Judged::Missed,
+            });
         }
         self.missed = None;
         let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
-        self.accepted = Some(Accepted { point, alpha_at_rest, deformed, recovered, judgement });
+        self.accepted = Some(Accepted { point, deformed, recovered, judgement });
         let unsettled = self.assumed.is_strict && self.differ(alpha);
         Ok(if unsettled { Judged::AmplitudesMoved } else { Judged::Passed })
     }
@@ -191,16 +174,9 @@ impl AcceptanceTest for Certifier<'_> {
         }
         let Ending { solution, deformed, recovered, judgement } = ending;
         let point = (copied(&solution.x, "forces")?, copied(&solution.alpha, "amplitudes")?);
-        self.accepted = Some(Accepted { point, alpha_at_rest: None, deformed, recovered, judgement });
+        self.accepted = Some(Accepted { point, deformed, recovered, judgement });
         self.judged = Judged::Passed;
         Ok(Mended::Accepted(Solution { verdict: Verdict::Solved, ..solution }))
-    }
-
-    fn length(&self) -> Option<f64> {
-        let unit = self.recovery.ready.island.unit.sqrt();
-        let reached = matches!(self.judged, Judged::RowsReached(_));
-        let accepted = self.accepted.as_ref().filter(|_| !reached);
-        accepted.map(|accepted| accepted.judgement.length / unit)
     }
 }
 

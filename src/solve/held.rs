@@ -4,20 +4,24 @@ use std::ops::Range;
 
 use crate::certificate::Candidate;
 use crate::constraints::RowKind;
+use crate::error::Result;
+use crate::linalg::graph::joined;
 use crate::linalg::vector::weighted_norm;
-use crate::linalg::Operator;
+use crate::linalg::{Csr, Matrix, Operator};
+use crate::qp::AnswerFace;
 use crate::setup::Ready;
 
-/// A force is rounding, and holds no motion, if it is below this part of the forces on each body that its row touches ...
+/// A force below this part of the forces on each body that its row touches, or on a body without load of all forces, may be
+/// rounding: it is, if the loads do no work along the motions that it holds.
+const SMALL: f64 = 1e-6;
+/// Below these parts it is rounding even if it holds no motion.
 const ROUNDING: f64 = 1e-12;
-/// ... or, on bodies without load, below this part of all forces: it may be rounding of the forces of other bodies.
 const IDLE: f64 = 64.0 * f64::EPSILON;
 
 /// Rows of the dual that hold nothing: groups of contact rows whose forces are all rounding, and tangential rows of nodes
-/// whose friction bound is 0. `load`: loads of all unknowns, force.
-pub fn without_force(ready: &Ready, load: &[f64], answer: Candidate) -> Vec<bool> {
-    let lambda = answer.lambda;
-    let (rows, island) = (&ready.rows, &ready.island);
+/// whose friction bound is 0. `load`: loads of all unknowns, force; `coarse`: G'.
+pub fn without_force(ready: &Ready, coarse: &Csr, load: &[f64], answer: Candidate) -> Result<Vec<bool>> {
+    let (lambda, rows, island) = (answer.lambda, &ready.rows, &ready.island);
     let mut push = vec![0.0; load.len()];
     for kind in RowKind::ALL {
         island.members(kind).rows.matrix.mul_transposed_add(1.0, answer.forces(kind), &mut push);
@@ -26,27 +30,92 @@ pub fn without_force(ready: &Ready, load: &[f64], answer: Candidate) -> Vec<bool
         weighted_norm(&v[range.clone()], |j| 1.0 / rows.metric[range.start + j])
     };
     let everywhere = size(load, &(0..load.len())).hypot(size(&push, &(0..load.len())));
-    let nothing = |range: &Range<usize>| {
+    let nothing = |range: &Range<usize>, part: f64, idle: f64| {
         let own = size(load, range);
-        let idle = if own == 0.0 { IDLE * everywhere } else { 0.0 };
-        (ROUNDING * (own + size(&push, range))).max(idle)
+        let idle = if own == 0.0 { idle * everywhere } else { 0.0 };
+        (part * (own + size(&push, range))).max(idle)
     };
-    let nothing: Vec<f64> = island.ranges.iter().map(nothing).collect();
+    let of_bodies =
+        |part, idle| -> Vec<f64> { island.ranges.iter().map(|range| nothing(range, part, idle)).collect() };
     let mut held: Vec<bool> = (0..rows.groups()).map(|group| rows.kind(group) != RowKind::Equality).collect();
+    let mut small = held.clone();
+    let (rounding, weak) = (of_bodies(ROUNDING, IDLE), of_bodies(SMALL, SMALL));
     for (i, (group, _)) in rows.scaling.grouping.members().filter(|(i, _)| *i < rows.contact) {
-        let bodies = island.contact.rows.matrix.row(i).map(|(j, _)| nothing[island.body_of(j)]);
-        if lambda[i] > rows.scaling.scale[i] * bodies.fold(f64::INFINITY, f64::min) {
-            held[group] = false;
-        }
+        let exceeds = |nothing: &[f64]| {
+            let bodies = island.contact.rows.matrix.row(i).map(|(j, _)| nothing[island.body_of(j)]);
+            lambda[i] > rows.scaling.scale[i] * bodies.fold(f64::INFINITY, f64::min)
+        };
+        held[group] &= !exceeds(&rounding);
+        small[group] &= !exceeds(&weak);
     }
     // friction resists if its bound is positive
     for node in island.friction.nodes.iter().filter(|node| node.limit(lambda) > 0.0) {
         for row in node.rows().map(|row| rows.tangential + row) {
             if let Some((group, _)) = rows.scaling.grouping.member[row] {
-                held[group] = false;
+                (held[group], small[group]) = (false, false);
             }
         }
     }
     held.resize(ready.dual.order(), false);
-    held
+    small.resize(ready.dual.order(), false);
+    let mut carries = vec![false; held.len()];
+    for (i, (group, _)) in rows.scaling.grouping.members().filter(|(i, _)| *i < rows.contact) {
+        carries[group] |= lambda[i] > 0.0 && small[group];
+    }
+    if carries.contains(&true) {
+        let (dual, unit) = (&ready.dual, island.unit);
+        let free = AnswerFace::new(coarse, &dual.blocks, &small, dual.rounding())?.undetermined()?;
+        let load: Vec<f64> = load.iter().map(|f| f / unit).collect();
+        push.iter_mut().for_each(|push| *push /= unit);
+        let [own, by_rows] = [&load, &push].map(|f| dual.sizes_of_loads(f, &rows.metric));
+        let terms: Vec<f64> = own.iter().zip(by_rows).map(|(own, by_rows)| own + by_rows).collect();
+        judge(&mut held, &carries, coarse, &free, (&dual.resultants(&load), &terms), dual.rounding());
+    }
+    Ok(held)
+}
+
+/// Rows with small forces hold nothing if the loads do no work, up to rounding, along the free motions that they and others with
+/// small forces resist; they do hold if the loads do.
+fn judge(
+    held: &mut [bool],
+    carries: &[bool],
+    coarse: &Csr,
+    free: &Matrix,
+    (e, terms): (&[f64], &[f64]),
+    rounding: f64,
+) {
+    let mut along = vec![Vec::new(); free.rows];
+    for j in 0..free.cols {
+        free.col(j)
+            .iter()
+            .enumerate()
+            .filter(|(_, a)| **a != 0.0)
+            .for_each(|(mode, a)| along[mode].push((j, *a)));
+    }
+    let resisted: Vec<(usize, Vec<usize>)> =
+        (0..held.len()).filter(|&i| carries[i]).map(|i| (i, resisted(coarse, i, &along, rounding))).collect();
+    let (component, count) = joined(free.cols, resisted.iter().map(|(_, motions)| motions.iter().copied()));
+    let mut works = vec![false; count];
+    for j in 0..free.cols {
+        let a = free.col(j);
+        let work: f64 = a.iter().zip(e).map(|(a, e)| a * e).sum();
+        let size: f64 = a.iter().zip(terms).map(|(a, term)| a.abs() * term).sum();
+        works[component[j]] |= work.abs() > rounding * size;
+    }
+    for (i, motions) in resisted.into_iter().filter(|(_, motions)| !motions.is_empty()) {
+        held[i] = !works[component[motions[0]]];
+    }
+}
+
+/// The free motions that row i resists by more than rounding.
+fn resisted(coarse: &Csr, i: usize, along: &[Vec<(usize, f64)>], rounding: f64) -> Vec<usize> {
+    let mut terms: Vec<(usize, f64)> =
+        coarse.row(i).flat_map(|(mode, g)| along[mode].iter().map(move |&(j, a)| (j, g * a))).collect();
+    terms.sort_by_key(|term| term.0);
+    let resists = |own: &&[(usize, f64)]| {
+        let (sum, size) =
+            own.iter().fold((0.0, 0.0), |(sum, size), term| (sum + term.1, size + term.1.abs()));
+        f64::abs(sum) > rounding * size
+    };
+    terms.chunk_by(|a, b| a.0 == b.0).filter(resists).map(|own| own[0].0).collect()
 }

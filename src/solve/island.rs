@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::platform::{interrupt, threads};
 use crate::progress::{Steps, Stops, Voice};
 use crate::qp::paper::Units;
-use crate::qp::{self, Direct, Rung, Solution, Verdict};
+use crate::qp::{self, Direct, Rung, Solution, Tries, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::{Contradictions, Unheld};
@@ -36,6 +36,8 @@ pub struct Solved {
     pub slide: Option<Slide>,
     /// G' without resistance that is noise of the data, if bodies would slide along it.
     pub cleaned: Option<Csr>,
+    /// The second tries made.
+    pub tries: Tries,
     /// Time for recovery and certification of answers, including the last.
     pub judging: Duration,
     pub recovering: Duration,
@@ -83,7 +85,7 @@ pub fn solve_island(
         let (ended, tries) =
             qp::during(case.model.settings.without as u64, || solve_held(case, number, start, stops, voice));
         ended.map(|mut solved| {
-            solved.ending.solution.counts.tries = tries;
+            solved.tries = tries;
             solved
         })
     })
@@ -236,6 +238,7 @@ fn attempt(
         unheld,
         slide,
         cleaned: None,
+        tries: Tries::default(),
         judging,
         recovering,
     })))

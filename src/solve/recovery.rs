@@ -9,7 +9,7 @@ use crate::linalg::vector::{axpy, weighted_norm};
 use crate::model::Model;
 use crate::platform::interrupt;
 use crate::platform::memory::{copied, zeros};
-use crate::qp::{Direct, Qp, Rung, Solution};
+use crate::qp::{Direct, Qp, Solution};
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::scaled::Scaled;
@@ -97,16 +97,11 @@ impl<'a> Recovery<'a> {
         self.with_forces(u, x)
     }
 
-    /// `K+ (f - B'x)`; if K+ is soft, the motion that K+ has lost is added, so that it does not count as a rigid motion.
+    /// `K+ (f - B'x)`
     pub fn deformed(&self, x: &[f64]) -> Result<Vec<f64>> {
         let mut load = copied(&self.scaled.load, "a displacement")?;
         self.ready.rows.take_forces(x, &mut load);
-        let mut deformed = self.inverse(&load)?;
-        if self.soft && Rung::Lost.is_tried() {
-            let lost = self.inverse(&self.load_left(&[&deformed], &[x])?)?;
-            axpy(1.0, &lost, &mut deformed);
-        }
-        Ok(deformed)
+        self.inverse(&load)
     }
 
     /// `K+ f`

@@ -69,6 +69,8 @@ pub struct Report {
     pub travelled: Option<usize>,
     /// Work of the methods on all islands.
     pub counts: qp::Counts,
+    /// The second tries made.
+    pub tries: qp::Tries,
     /// The direct finish (option `finish`) ran and its answer was kept.
     pub finished: bool,
     /// `|S|B||u|| + |S c|` at the first feasible forces, to which the tolerance of the dual is relative, `(force x
@@ -111,6 +113,7 @@ impl Report {
             slide: None,
             travelled: None,
             counts: qp::Counts::default(),
+            tries: qp::Tries::default(),
             finished: false,
             gap_scale: 0.0,
             work: prepared.work,

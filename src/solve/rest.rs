@@ -11,19 +11,28 @@ use crate::solve::held::without_force;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
 use crate::solve::travel::{travel, Moving, OpenMotions, Shift};
 
+/// The answer of least travel.
+struct AtRest {
+    recovered: Recovered,
+    alpha: Vec<f64>,
+    /// Number of the motions that no row holds.
+    undetermined: usize,
+}
+
 impl<'a> Recovery<'a> {
     /// Replaces the answer by that of least travel among the answers that differ by motions which nothing resists, unless
     /// only the original answer passes. If the host or the time limit stops it, the answer is unchanged and the verdict
     /// names the reason.
     pub fn bring_to_rest(&self, ending: &mut Ending) -> Result<()> {
-        if ending.solution.undetermined == 0 {
-            return Ok(());
-        }
-        let at_rest = self.at_rest(&ending.recovered, &ending.solution.x, &ending.deformed);
+        let Ending { solution, recovered, deformed, .. } = &*ending;
+        let at_rest = match solution.undetermined > 0 || self.has_rounding(recovered)? {
+            true => self.at_rest(recovered, &solution.x, deformed),
+            false => return Ok(()),
+        };
         let judged = at_rest.and_then(|at_rest| {
-            let Some((recovered, alpha)) = at_rest else { return Ok(None) };
-            let judgement = self.judged(&recovered)?;
-            Ok(Some((recovered, alpha, judgement)))
+            let Some(at_rest) = at_rest else { return Ok(None) };
+            let judgement = self.judged(&at_rest.recovered)?;
+            Ok(Some((at_rest, judgement)))
         });
         let judged = match judged {
             Ok(judged) => judged,
@@ -32,34 +41,43 @@ impl<'a> Recovery<'a> {
                 return Ok(());
             }
         };
-        let Some((recovered, alpha, judgement)) = judged else { return Ok(()) };
+        let Some((AtRest { recovered, alpha, undetermined }, judgement)) = judged else { return Ok(()) };
         if judgement.certificate.passed() || !ending.judgement.certificate.passed() {
-            ending.solution.alpha = alpha;
+            (ending.solution.alpha, ending.solution.undetermined) = (alpha, undetermined);
             (ending.recovered, ending.judgement) = (recovered, judgement);
         }
         Ok(())
     }
 
+    /// Some forces are rounding.
+    fn has_rounding(&self, answer: &Recovered) -> Result<bool> {
+        let held = self.without_force(answer)?;
+        let members = self.ready.rows.scaling.grouping.members();
+        Ok(members
+            .filter(|(i, _)| *i < answer.lambda.len())
+            .any(|(i, (group, _))| held[group] && answer.lambda[i] > 0.0))
+    }
+
+    /// Rows of the dual whose forces hold nothing.
+    pub fn without_force(&self, answer: &Recovered) -> Result<Vec<bool>> {
+        let load: Vec<f64> = self.scaled.load.iter().map(|f| f * self.ready.island.unit).collect();
+        without_force(self.ready, self.faces.qp.g_transposed, &load, answer.view())
+    }
+
     /// The answer of least travel with its amplitudes, for the forces x; none if rows resist every motion. The distance
     /// that the method has travelled has no influence, not even through rounding.
-    pub fn at_rest(
-        &self,
-        answer: &Recovered,
-        x: &[f64],
-        deformed: &[f64],
-    ) -> Result<Option<(Recovered, Vec<f64>)>> {
+    fn at_rest(&self, answer: &Recovered, x: &[f64], deformed: &[f64]) -> Result<Option<AtRest>> {
         if self.friction {
             return Ok(None);
         }
         let dual = &self.ready.dual;
-        let load: Vec<f64> = self.scaled.load.iter().map(|f| f * self.ready.island.unit).collect();
-        let held = without_force(self.ready, &load, answer.view());
+        let held = self.without_force(answer)?;
         let mut face = AnswerFace::of(&self.faces.qp, &held)?;
         let free = face.undetermined()?;
         if free.cols == 0 {
             return Ok(None);
         }
-        let mut u = deformed.to_vec();
+        let (mut u, undetermined) = (deformed.to_vec(), free.cols);
         let mut open = self.gaps_left(&[&u], &[x]);
         // (F x)_s = x_s on the springs of bodies
         let springs = open.len() - dual.springs..;
@@ -79,7 +97,7 @@ impl<'a> Recovery<'a> {
             let modes = dual.modes_of(k);
             axpy(dual.size_of(k), &change.amplitudes[modes.clone()], &mut alpha[modes]);
         }
-        Ok(Some((Recovered { u, ..answer.clone() }, alpha)))
+        Ok(Some(AtRest { recovered: Recovered { u, ..answer.clone() }, alpha, undetermined }))
     }
 
     /// The motion that brings u to rest along the free motions; none if rounding leaves no such motion.

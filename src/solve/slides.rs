@@ -13,7 +13,6 @@ use crate::linalg::Csr;
 use crate::platform::memory::{copied, zeros};
 use crate::qp::AnswerFace;
 use crate::setup::Ready;
-use crate::solve::held::without_force;
 use crate::solve::recovery::{Ending, Recovery};
 
 /// A body slides if it moves farther than it deforms by this factor ...
@@ -56,7 +55,7 @@ pub struct Slides {
 impl Recovery<'_> {
     pub fn slides(&self, ending: &Ending) -> Result<Slides> {
         let ready = self.ready;
-        let (unit, bodies) = (ready.island.unit, &self.data.bodies);
+        let bodies = &self.data.bodies;
         let mut rest = copied(&ending.recovered.u, WHAT)?;
         let n = rest.len();
         let mut slides = Slides {
@@ -75,8 +74,7 @@ impl Recovery<'_> {
         if !moves.contains(&true) && self.scaled.along.is_empty() {
             return Ok(slides);
         }
-        let load: Vec<f64> = self.scaled.load.iter().map(|f| f * unit).collect();
-        slides.held = without_force(ready, &load, ending.recovered.view());
+        slides.held = self.without_force(&ending.recovered)?;
         self.evaluate(&mut slides, &moves, &rest)?;
         if slides.all.is_empty() && !self.scaled.along.is_empty() {
             // what the forces left of the load is left along rows that hardly resist it

@@ -67,9 +67,9 @@ impl Problem {
             let mu = ready.island.equalities.gather(&answer.mu);
             let tangential = ready.island.friction.tangential.gather(&answer.tangential);
             let answer = Candidate { u: &[], lambda: &lambda, mu: &mu, tangential: &tangential };
-            let held = without_force(ready, &ready.island.loads(self.solved())?, answer);
             let dual = &ready.dual;
             let coarse = cleaned.as_ref().unwrap_or(&dual.coarse);
+            let held = without_force(ready, coarse, &ready.island.loads(self.solved())?, answer)?;
             let motions = AnswerFace::new(coarse, &dual.blocks, &held, dual.rounding())?.undetermined()?;
             all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));
         }

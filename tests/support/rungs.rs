@@ -67,7 +67,7 @@ fn add(seed: u64, solve: impl Fn(u64, i64) -> Option<Ended>, lines: &mut [Line])
     });
     for (rung, name, _) in Rung::ALL {
         // an error does not tell what was tried before it
-        let made = |report: &Report| report.counts.tries.made().any(|(made, _)| made == *name);
+        let made = |report: &Report| report.tries.made().any(|(made, _)| made == *name);
         if !all.report.as_ref().is_none_or(made) {
             continue;
         }

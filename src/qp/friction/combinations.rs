@@ -5,7 +5,7 @@ use crate::linalg::vector::{axpy, norm};
 use crate::qp::friction::cones::Node;
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
-use crate::qp::friction::newton::{Laws, Point, Run, RHO};
+use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::path::{Solves, Way, LAST};
 use crate::qp::Rung;
 
@@ -96,12 +96,11 @@ impl Run<'_, '_> {
 
     /// The point with these states, if it meets the laws.
     fn of_states(&mut self, dense: &Dense, states: &[Choice], start: &Point) -> Result<Option<Point>> {
-        let laws = Laws { cones: self.problem.cones, rho: RHO };
-        let mut face = Face::empty(laws.cones, RHO);
-        for (node, choice) in laws.cones.nodes().iter().zip(states) {
+        let mut face = Face::empty(self.problem.cones, RHO);
+        for (node, choice) in self.problem.cones.nodes().iter().zip(states) {
             face.push_node(node, choice.closed, choice.state, (choice.along, 0.0));
         }
-        face.finish(laws.cones);
+        face.finish(self.problem.cones);
         let turns = if face.coordinates.iter().any(|at| at.rows[0] != at.rows[1]) { TURNS } else { 0 };
         let mut now = start.clone();
         for _ in 0..=turns {
@@ -111,14 +110,14 @@ impl Run<'_, '_> {
             axpy(1.0, &step.dx, &mut x);
             axpy(1.0, &step.dg, &mut g);
             axpy(1.0, &turn, &mut alpha);
-            now = self.point(laws, x, g, alpha)?;
+            now = self.point(x, g, alpha)?;
             if self.is_met(&now) {
                 return Ok(Some(now));
             }
             if !now.merit.is_finite() {
                 break;
             }
-            face = Face::at(laws.cones, &now.x, &now.r, RHO);
+            face = Face::at(self.problem.cones, &now.x, &now.r, RHO);
         }
         Ok(None)
     }

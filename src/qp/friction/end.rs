@@ -5,7 +5,7 @@ use crate::linalg::vector::{axpy, norm, ratio};
 use crate::qp::friction::cones::Cones;
 use crate::qp::friction::face::Face;
 use crate::qp::friction::nearest::{project, Projected};
-use crate::qp::friction::newton::{Laws, Point, Run, RHO};
+use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::{
     FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
 };
@@ -59,7 +59,7 @@ pub fn known_face(
     run.measure(&g, limits.tolerance)?;
     g = run.gradient(&x)?;
     let alpha = run.turned(&model, &x, &g, &vec![0.0; problem.e.len()])?;
-    let start = run.point(Laws { cones: problem.cones, rho: RHO }, x, g, alpha)?;
+    let start = run.point(x, g, alpha)?;
     let preconditioner = problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
     let size = norm(&model.reduced(model.face.residual(&start.x, &start.r))?);
     let (mut there, mut rest) = ((start.x.clone(), start.r.clone()), 1.0);
@@ -84,13 +84,12 @@ impl<'a> Run<'a, '_> {
         (first, alpha): (Projected, Vec<f64>),
         judge: &mut dyn AcceptanceTest,
     ) -> Result<Verdict> {
-        let laws = Laws { cones: self.problem.cones, rho: RHO };
         let start = self.begun(limits.tolerance, &first, &alpha)?;
         self.last.clone_from(&start);
         if !(start.merit.is_finite() && self.small.is_finite()) {
             return Ok(Verdict::Stalled);
         }
-        let mut now = self.newton(laws, start.clone())?;
+        let mut now = self.newton(start.clone())?;
         let looser = (limits.tolerance / FINE).log10().ceil().max(0.0);
         let refusals = REFUSALS + looser as usize;
         for refusal in 0..=refusals {
@@ -108,7 +107,7 @@ impl<'a> Run<'a, '_> {
                 }
                 if met && Rung::Tighter.is_tried() {
                     self.small *= TIGHTER;
-                    now = self.newton(laws, answer)?;
+                    now = self.newton(answer)?;
                     continue;
                 }
             }
@@ -155,28 +154,26 @@ impl<'a> Run<'a, '_> {
             return Ok(false);
         };
         self.counts = self.counts + counts;
-        let laws = Laws { cones: self.problem.cones, rho: RHO };
         let g = self.gradient(&x)?;
-        self.last = self.point(laws, x, g, alpha)?;
+        self.last = self.point(x, g, alpha)?;
         Ok(true)
     }
 
     /// The answer: exact zeros, forces exactly within the cones, gaps from a separate product.
     fn finished(&mut self, now: &Point) -> Result<Point> {
-        let laws = Laws { cones: self.problem.cones, rho: RHO };
         let mut y = now.x.clone();
         // open nodes, by their gaps: finally exactly 0
-        for row in laws.cones.nodes().iter().filter_map(|node| node.normal) {
+        for row in self.problem.cones.nodes().iter().filter_map(|node| node.normal) {
             let trial = now.x[row] - RHO * now.r[row];
             y[row] = if trial <= 0.0 { trial.min(y[row]) } else { y[row] };
         }
-        let inside = project(&self.problem, laws.cones, self.motions.as_ref(), &y)?;
+        let inside = project(&self.problem, self.problem.cones, self.motions.as_ref(), &y)?;
         let x = if inside.met { inside.point } else { now.x.clone() };
         let g = self.gradient(&x)?;
-        let model = self.model(Face::at(laws.cones, &x, &self.gaps(&g, &now.alpha), RHO))?;
+        let model = self.model(Face::at(self.problem.cones, &x, &self.gaps(&g, &now.alpha), RHO))?;
         let turned = self.turned(&model, &x, &g, &now.alpha)?;
         let (as_is, turned) =
-            (self.point(laws, x.clone(), g.clone(), now.alpha.clone())?, self.point(laws, x, g, turned)?);
+            (self.point(x.clone(), g.clone(), now.alpha.clone())?, self.point(x, g, turned)?);
         Ok(if turned.merit < as_is.merit && Rung::Turned.is_tried() { turned } else { as_is })
     }
 

@@ -112,8 +112,6 @@ pub struct FrictionReport {
 pub struct Tried {
     /// Newton steps, each with a new face.
     pub newton: usize,
-    /// Starts with another rho.
-    pub restarts: usize,
     /// Paths along smoothed laws, with pairs and with dense matrices.
     pub paths: usize,
     pub dense_paths: usize,
@@ -126,7 +124,7 @@ pub struct Tried {
 impl Tried {
     /// Number of starts, including the first.
     pub fn starts(&self) -> usize {
-        let others = self.restarts + self.paths + self.dense_paths;
+        let others = self.paths + self.dense_paths;
         1 + others + usize::from(self.sticking) + self.combinations
     }
 }

@@ -4,14 +4,13 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
 use crate::platform::{interrupt, tally};
-use crate::qp::friction::cones::Cones;
 use crate::qp::friction::face::{Face, Model, State};
 use crate::qp::friction::motions::{Inverse, Motions};
 use crate::qp::friction::pairs::{Pair, Pairs, Step};
 use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Slide, Tried};
 use crate::qp::{Counts, Rung};
 
-/// The first rho: rows have the compliance `b K_d^-1 b' + C = 1`.
+/// rho, by which forces and lengths are compared, no unit: rows have the compliance `b K_d^-1 b' + C = 1`.
 pub const RHO: f64 = 0.2;
 /// Limit of directions on one face.
 const DIRECTIONS: usize = 10;
@@ -29,13 +28,6 @@ const FALLS: f64 = 0.01;
 const ENOUGH: f64 = 0.8;
 const STEPS: usize = 4;
 const PRODUCTS: usize = 8;
-
-/// The laws, and the number by which forces and lengths are compared: rho > 0, no unit.
-#[derive(Clone, Copy)]
-pub struct Laws<'c> {
-    pub cones: &'c Cones,
-    pub rho: f64,
-}
 
 /// x with `G x = e`, `g = F x - d`, `r = g - G'alpha`, and the violation of the laws.
 #[derive(Clone, Default)]
@@ -69,19 +61,19 @@ pub struct Run<'a, 'w> {
 
 impl Run<'_, '_> {
     /// Continues from `now` until the laws are satisfied, or the merit falls too slowly.
-    pub fn newton(&mut self, laws: Laws, mut now: Point) -> Result<Point> {
+    pub fn newton(&mut self, mut now: Point) -> Result<Point> {
         let mut best = (now.merit, self.tried.newton, self.counts.products);
         if self.pairs.count() > 0 {
-            now = self.without_products(laws, now)?;
+            now = self.without_products(now)?;
         }
         while !self.is_met(&now)
             && self.tried.newton < best.1 + STEPS
             && self.counts.products < self.limit.min(best.2 + PRODUCTS)
         {
-            let model = self.model(Face::at(laws.cones, &now.x, &now.r, laws.rho))?;
-            let Some((next, falls)) = self.step(laws, &model, &now)? else { break };
+            let model = self.model(Face::at(self.problem.cones, &now.x, &now.r, RHO))?;
+            let Some((next, falls)) = self.step(&model, &now)? else { break };
             self.tried.newton += 1;
-            now = if falls { self.without_products(laws, next)? } else { next };
+            now = if falls { self.without_products(next)? } else { next };
             self.reached(&now);
             if now.merit < ENOUGH * best.0 {
                 best = (now.merit, self.tried.newton, self.counts.products);
@@ -92,7 +84,7 @@ impl Run<'_, '_> {
 
     /// Adds directions to the pairs until a trial reduces the merit or the model is solved; returns whether the merit
     /// fell.
-    fn step(&mut self, laws: Laws, model: &Model, now: &Point) -> Result<Option<(Point, bool)>> {
+    fn step(&mut self, model: &Model, now: &Point) -> Result<Option<(Point, bool)>> {
         let preconditioner = self.problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
         let mut there = (now.x.clone(), now.r.clone());
         for count in 1..=DIRECTIONS {
@@ -101,7 +93,7 @@ impl Run<'_, '_> {
                 return Ok(None);
             }
             let step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
-            let (best, falls) = self.best_trial(laws, model, now, &step, &TRIALS)?;
+            let (best, falls) = self.best_trial(model, now, &step, &TRIALS)?;
             if falls || step.rest < SOLVED || count == DIRECTIONS || self.counts.products >= self.limit {
                 return Ok(Some((best, falls)));
             }
@@ -113,14 +105,14 @@ impl Run<'_, '_> {
     }
 
     /// Steps to new faces with the existing pairs, while the merit falls.
-    fn without_products(&mut self, laws: Laws, mut now: Point) -> Result<Point> {
+    fn without_products(&mut self, mut now: Point) -> Result<Point> {
         for _ in 0..INNER_STEPS {
             if self.is_met(&now) || !Rung::Inner.is_tried() {
                 break;
             }
-            let model = self.model(Face::at(laws.cones, &now.x, &now.r, laws.rho))?;
+            let model = self.model(Face::at(self.problem.cones, &now.x, &now.r, RHO))?;
             let step = self.pairs.minimise(&model, model.face.residual(&now.x, &now.r))?;
-            let (next, falls) = self.best_trial(laws, &model, &now, &step, &INNER_TRIALS)?;
+            let (next, falls) = self.best_trial(&model, &now, &step, &INNER_TRIALS)?;
             if !falls {
                 break;
             }
@@ -133,7 +125,6 @@ impl Run<'_, '_> {
     /// new point.
     fn best_trial(
         &mut self,
-        laws: Laws,
         model: &Model,
         now: &Point,
         step: &Step,
@@ -145,7 +136,7 @@ impl Run<'_, '_> {
             axpy(t, &step.dx, &mut x);
             axpy(t, &step.dg, &mut g);
             let alpha = self.turned(model, &x, &g, &now.alpha)?;
-            let next = self.point(laws, x, g, alpha)?;
+            let next = self.point(x, g, alpha)?;
             if next.merit <= (1.0 - FALLS * t) * now.merit {
                 return Ok((next, true));
             }
@@ -273,11 +264,11 @@ impl Run<'_, '_> {
     }
 
     /// `merit = |r_E ; (x - NAT(xi))/rho ; G'(G G')^+ (G x - e)/rho|`
-    pub fn point(&mut self, laws: Laws, x: Vec<f64>, g: Vec<f64>, alpha: Vec<f64>) -> Result<Point> {
+    pub fn point(&mut self, x: Vec<f64>, g: Vec<f64>, alpha: Vec<f64>) -> Result<Point> {
         let r = self.gaps(&g, &alpha);
-        let law = laws.cones.law(&x, &r, laws.rho);
+        let law = self.problem.cones.law(&x, &r, RHO);
         let square = dot(&law, &law) + self.balance_missed(&x)?;
-        Ok(Point { x, g, alpha, r, merit: square.sqrt() / laws.rho })
+        Ok(Point { x, g, alpha, r, merit: square.sqrt() / RHO })
     }
 
     /// `|G'(G G')^+ (G x - e)|^2`

@@ -1,5 +1,5 @@
-//! Alternatives if Newton's method does not end well, by cost: another rho close to an answer, the smoothed laws, weak supports,
-//! sticking nodes, dense systems. Each solves problems that the others do not.
+//! Alternatives if Newton's method does not end well, by cost: the smoothed laws, weak supports, sticking nodes, dense systems.
+//! `make rungs` counts what each saves.
 
 use crate::error::{Kind, Result};
 use crate::linalg::vector::axpy;
@@ -7,24 +7,17 @@ use crate::qp::friction::coordinates::Law;
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
 use crate::qp::friction::nearest::project;
-use crate::qp::friction::newton::{Laws, Point, Run, RHO};
+use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::path::{LONG, SHORT};
 use crate::qp::friction::slides::Shown;
 use crate::qp::friction::FrictionLimits;
 use crate::qp::Rung;
-
-/// A merit below this part of the scale is close to an answer: another rho, by this factor, may be enough.
-const FAR: f64 = 1e-3;
-const OTHER: f64 = 5.0;
 
 impl Run<'_, '_> {
     /// Called if Newton's method has not ended well: tries one alternative after the other until one succeeds. A slide that weak supports
     /// show spares what costs many products; rests beside it are sought by the others.
     pub fn otherwise(&mut self, limits: FrictionLimits, start: &Point, stalled: Point) -> Result<Point> {
         let mut now = stalled.clone();
-        if now.merit <= FAR * self.scale && Rung::Restart.is_tried() {
-            now = self.again(&now, OTHER * RHO)?;
-        }
         if !self.is_over(&now) && Rung::ShortPath.is_tried() {
             now = self.along_path(start, SHORT)?;
         }
@@ -75,14 +68,6 @@ impl Run<'_, '_> {
         Ok(None)
     }
 
-    /// Another rho, from the present point.
-    fn again(&mut self, now: &Point, rho: f64) -> Result<Point> {
-        self.tried.restarts += 1;
-        let laws = Laws { cones: self.problem.cones, rho };
-        let begun = self.begin(laws, &now.x, &now.g, &now.alpha)?;
-        self.newton(laws, begun)
-    }
-
     fn is_over(&self, now: &Point) -> bool {
         self.is_met(now) || self.counts.products >= self.limit
     }
@@ -108,20 +93,18 @@ impl Run<'_, '_> {
         axpy(1.0, &step.dx, &mut x);
         axpy(1.0, &step.dg, &mut g);
         let alpha = self.turned(&model, &x, &g, &start.alpha)?;
-        let laws = Laws { cones: self.problem.cones, rho: RHO };
-        let found = self.point(laws, x, g, alpha)?;
+        let found = self.point(x, g, alpha)?;
         self.newton_within(&found)
     }
 
     /// Newton's method from the nearest point within the cones.
     fn newton_within(&mut self, found: &Point) -> Result<Option<Point>> {
-        let laws = Laws { cones: self.problem.cones, rho: RHO };
-        let inside = project(&self.problem, laws.cones, self.motions.as_ref(), &found.x)?;
+        let inside = project(&self.problem, self.problem.cones, self.motions.as_ref(), &found.x)?;
         if !inside.met {
             return Ok(None);
         }
         let g = self.gradient(&inside.point)?;
-        let begun = self.begin(laws, &inside.point, &g, &found.alpha)?;
-        self.newton(laws, begun).map(Some)
+        let begun = self.begin(&inside.point, &g, &found.alpha)?;
+        self.newton(begun).map(Some)
     }
 }

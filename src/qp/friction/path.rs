@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::linalg::vector::{axpy, norm_max};
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::Model;
-use crate::qp::friction::newton::{Laws, Point, Run, RHO};
+use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::pairs::Step;
 use crate::qp::friction::smooth::{face, missed, Smoothing};
 
@@ -36,19 +36,18 @@ impl Run<'_, '_> {
             Solves::Pairs { .. } => self.tried.paths += 1,
             Solves::Dense(_) => self.tried.dense_paths += 1,
         }
-        let laws = Laws { cones: self.problem.cones, rho: RHO };
-        let begun = self.point(laws, start.x.clone(), start.g.clone(), start.alpha.clone())?;
-        let end = self.path(laws, begun, way)?;
+        let begun = self.point(start.x.clone(), start.g.clone(), start.alpha.clone())?;
+        let end = self.path(begun, way)?;
         if self.is_met(&end) {
             return Ok(end);
         }
-        self.newton(laws, end)
+        self.newton(end)
     }
 
     /// Continues from `now` until the laws are satisfied or eps is at its end; with at most `products` further pairs, or
     /// with dense systems.
-    pub fn path(&mut self, laws: Laws, mut now: Point, way: Way) -> Result<Point> {
-        let Laws { cones, rho } = laws;
+    pub fn path(&mut self, mut now: Point, way: Way) -> Result<Point> {
+        let (cones, rho) = (self.problem.cones, RHO);
         let root = (now.x.len() as f64).sqrt();
         let end = match way.solves {
             Solves::Pairs { products } => self.limit.min(self.counts.products + products),
@@ -70,7 +69,7 @@ impl Run<'_, '_> {
                 }
             };
             self.tried.newton += 1;
-            let (next, t, left) = self.shortened(laws, &model, &now, &step, by)?;
+            let (next, t, left) = self.shortened(&model, &now, &step, by)?;
             now = next;
             if left <= eps * root {
                 eps *= if t == 1.0 { SHRINKS } else { SHRINKS_LESS };
@@ -103,13 +102,12 @@ impl Run<'_, '_> {
     /// residual.
     fn shortened(
         &mut self,
-        laws: Laws,
         model: &Model,
         now: &Point,
         step: &Step,
         by: Smoothing,
     ) -> Result<(Point, f64, f64)> {
-        let Laws { cones, rho } = laws;
+        let (cones, rho) = (self.problem.cones, RHO);
         let before = missed(cones, &now.x, &now.r, rho, by);
         let along = |t: f64| {
             let (mut x, mut g) = (now.x.clone(), now.g.clone());
@@ -126,7 +124,7 @@ impl Run<'_, '_> {
                 now.alpha.iter().zip(&there).map(|(now, there)| now + t * (there - now)).collect();
             let left = missed(cones, &x, &self.gaps(&g, &alpha), rho, by);
             if left <= (1.0 - FALLS * t) * before || t <= SHORTEST {
-                let next = self.point(laws, x, g, alpha)?;
+                let next = self.point(x, g, alpha)?;
                 let next = if next.merit.is_finite() { next } else { now.clone() };
                 return Ok((next, t, left));
             }

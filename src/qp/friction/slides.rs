@@ -10,7 +10,7 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm, norm_max};
 use crate::qp::friction::direct::Dense;
-use crate::qp::friction::newton::{Laws, Point, Run, RHO};
+use crate::qp::friction::newton::{Point, Run};
 use crate::qp::friction::path::SHORT;
 use crate::qp::friction::supports::Supported;
 use crate::qp::friction::{FrictionLimits, FrictionProblem, FrictionStart, Slide};
@@ -53,9 +53,8 @@ impl Run<'_, '_> {
                 FrictionLimits { tolerance, products: self.limit - self.counts.products, direct: None };
             let begin = FrictionStart { x: before.as_ref().map(|before| &before.x[..]), alpha: None, pairs };
             let (mut run, first) = Run::new(supported.problem(), limits, begin, &mut *self.observer)?;
-            let laws = Laws { cones: run.problem.cones, rho: RHO };
             let begun = run.begun(tolerance, &first, &vec![0.0; modes])?;
-            let mut found = run.newton(laws, begun.clone())?;
+            let mut found = run.newton(begun.clone())?;
             if !run.is_met(&found) && Rung::SupportPath.is_tried() {
                 found = match dense {
                     None => run.along_path(&begun, SHORT)?,

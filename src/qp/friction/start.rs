@@ -6,7 +6,7 @@ use crate::qp::friction::coordinates::of_rows;
 use crate::qp::friction::face::Face;
 use crate::qp::friction::motions::Motions;
 use crate::qp::friction::nearest::{project, Projected};
-use crate::qp::friction::newton::{Laws, Point, Run, RHO};
+use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::{FrictionLimits, FrictionObserver, FrictionProblem, FrictionStart, Tried};
 use crate::qp::Counts;
 
@@ -48,9 +48,8 @@ impl<'a, 'w> Run<'a, 'w> {
     pub fn begun(&mut self, tolerance: f64, first: &Projected, alpha: &[f64]) -> Result<Point> {
         let g = self.gradient(&first.point)?;
         self.measure(&g, tolerance)?;
-        let laws = Laws { cones: self.problem.cones, rho: RHO };
-        self.allow_for_balance(laws, &first.point)?;
-        self.begin(laws, &first.point, &g, alpha)
+        self.allow_for_balance(&first.point)?;
+        self.begin(&first.point, &g, alpha)
     }
 
     /// `F x - d`
@@ -68,9 +67,9 @@ impl<'a, 'w> Run<'a, 'w> {
     }
 
     /// Increases that merit by the rounding of `G x = e` at the start, which later directions do not change.
-    pub fn allow_for_balance(&mut self, laws: Laws, x: &[f64]) -> Result<()> {
+    pub fn allow_for_balance(&mut self, x: &[f64]) -> Result<()> {
         const TIMES: f64 = 4.0;
-        let floor = TIMES * self.balance_missed(x)?.sqrt() / laws.rho;
+        let floor = TIMES * self.balance_missed(x)?.sqrt() / RHO;
         self.small = if floor > self.small { floor } else { self.small };
         Ok(())
     }
@@ -90,12 +89,12 @@ impl<'a, 'w> Run<'a, 'w> {
     }
 
     /// The start point with x and g; a in two passes, `a += da` with the face of (x, 0), then with that of (x, r).
-    pub fn begin(&mut self, laws: Laws, x: &[f64], g: &[f64], alpha: &[f64]) -> Result<Point> {
+    pub fn begin(&mut self, x: &[f64], g: &[f64], alpha: &[f64]) -> Result<Point> {
         let none = vec![0.0; x.len()];
-        let first = self.model(Face::at(laws.cones, x, &none, laws.rho))?;
+        let first = self.model(Face::at(self.problem.cones, x, &none, RHO))?;
         let alpha = self.turned(&first, x, g, alpha)?;
-        let second = self.model(Face::at(laws.cones, x, &self.gaps(g, &alpha), laws.rho))?;
+        let second = self.model(Face::at(self.problem.cones, x, &self.gaps(g, &alpha), RHO))?;
         let alpha = self.turned(&second, x, g, &alpha)?;
-        self.point(laws, x.to_vec(), g.to_vec(), alpha)
+        self.point(x.to_vec(), g.to_vec(), alpha)
     }
 }

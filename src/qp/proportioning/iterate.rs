@@ -34,8 +34,8 @@ pub struct Iterate<'a> {
     pub settled: bool,
     /// Expected length of the next step along a preconditioned gradient: that of the previous step.
     pub expected: Option<f64>,
-    /// Number of consecutive projected steps that were cut short.
-    pub cuts: usize,
+    /// The last projected step was cut short.
+    pub cut: bool,
     /// L: running upper estimate of the curvature of theta.
     pub curvature: f64,
     /// `p'A p` and A p of the last product that was used for L.
@@ -58,7 +58,7 @@ impl<'a> Iterate<'a> {
             kept: Conjugate::default(),
             settled: true,
             expected: None,
-            cuts: 0,
+            cut: false,
             curvature: 0.0,
             observed: None,
             drift: Drift::default(),

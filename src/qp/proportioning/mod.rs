@@ -131,10 +131,7 @@ fn run(
         if it.split.norm() <= small || stop.plateau(it) {
             it.rebalance()?;
             if judge.accepts(&it.x, &it.alpha)? {
-                if !stop.refine(limits.tolerance, judge.length()) {
-                    return Ok(Verdict::Solved);
-                }
-                continue;
+                return Ok(Verdict::Solved);
             }
             let missed = judge.missed();
             if stop.stays(missed) && judge.has_better_data() {

@@ -19,8 +19,6 @@ const LOST: f64 = 1e-7;
 /// If less than this part is left beside the stored directions, it is projected again, since the rounding of the first
 /// projection matters.
 const CANCELLED: f64 = 0.1;
-/// After this number of consecutive projected steps that were cut short, a step ends at the bound.
-const CUTS: usize = 3;
 /// Steps shorter than this part of x are not stored.
 const SHORT: f64 = 1e-6;
 /// After this number of gradient projections, free motions are those of the last projection: otherwise projections alone
@@ -54,15 +52,11 @@ impl Iterate<'_> {
     /// length.
     pub fn explore(&mut self) -> Result<Step> {
         let p = self.direction()?;
-        let to_bound = self.cuts == CUTS && Rung::ToBound.is_tried();
-        self.cuts %= CUTS;
         // P4: projection before the product
-        let far = self
-            .expected
-            .filter(|t| !to_bound && self.feasible_step(&p, 0.0) < *t && Rung::ProjectedFirst.is_tried());
-        let step = match far {
+        let beyond = |t: &f64| self.feasible_step(&p, 0.0) < *t && Rung::ProjectedFirst.is_tried();
+        let step = match self.expected.filter(beyond) {
             Some(t) if self.expand(&p, t)? => Step::Expansion,
-            _ => self.step_along(p, to_bound)?,
+            _ => self.step_along(p)?,
         };
         self.counts.conjugate_gradient += usize::from(matches!(step, Step::ConjugateGradient));
         self.counts.expansions += usize::from(matches!(step, Step::Expansion));
@@ -105,8 +99,8 @@ impl Iterate<'_> {
     }
 
     /// P5 and P6: the exact step `x - t p` if the bounds allow it. Otherwise an expansion: projected if the bounds leave
-    /// too little of the step, or up to the bound if `to_bound`.
-    fn step_along(&mut self, p: Vec<f64>, to_bound: bool) -> Result<Step> {
+    /// too little of the step, or up to the bound.
+    fn step_along(&mut self, p: Vec<f64>) -> Result<Step> {
         if norm(&p) == 0.0 {
             return Ok(Step::Stuck);
         }
@@ -131,7 +125,7 @@ impl Iterate<'_> {
             self.go_along(&p, &image, t)?;
             return Ok(Step::ConjugateGradient);
         }
-        if far && !to_bound && t.is_finite() && self.expand(&p, t)? {
+        if far && t.is_finite() && self.expand(&p, t)? {
             return Ok(Step::Expansion);
         }
         self.go_along(&p, &image, bound)?;
@@ -157,7 +151,7 @@ impl Iterate<'_> {
         let flat = curvature <= SINGULAR * self.curvature * dot(&s, &s);
         let best = if flat { f64::INFINITY } else { -slope / curvature };
         let cut = best <= 0.5;
-        self.cuts = if cut { self.cuts + 1 } else { 0 };
+        self.cut = cut;
         let length = if cut { best } else { 1.0 };
         self.expected = Some(t * if cut { best } else { best.clamp(1.0, 2.0) });
         let (mut x, mut g) = (projected.point, self.g.clone());
@@ -229,7 +223,7 @@ impl Iterate<'_> {
     /// P9, and P10 after a cut or if P9 does not lead downwards: active rows with a negative multiplier leave the active
     /// set. `small`: length below which a projected gradient counts as zero.
     pub fn proportion(&mut self, small: f64) -> Result<Step> {
-        let step = if std::mem::take(&mut self.cuts) > 0 || !Rung::PullAll.is_tried() {
+        let step = if std::mem::take(&mut self.cut) || !Rung::PullAll.is_tried() {
             None
         } else {
             self.free_pulling(small)?
@@ -258,7 +252,7 @@ impl Iterate<'_> {
         let own = (pressed && self.qp.preconditioner.is_some()).then_some(1.0);
         let step = match length.or(own) {
             Some(t) if self.expand(&p, t)? => Step::Proportioning,
-            None if !pressed => self.step_along(p, false)?,
+            None if !pressed => self.step_along(p)?,
             _ => Step::Stuck,
         };
         match step {

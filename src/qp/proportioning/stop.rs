@@ -4,14 +4,13 @@ use crate::linalg::vector::norm;
 use crate::qp::proportioning::iterate::Iterate;
 use crate::qp::{Rung, Verdict};
 
-/// The scale is dominated by rigid travel if it exceeds the scale without travel by this factor.
-const TRAVEL: f64 = 10.0;
 /// A point refused by less than this factor is corrected by some more steps.
 const MISSED: f64 = 1e3;
+/// How many times the tolerance is tightened if the point is not accepted, first by the violation.
+const TIGHTENINGS: usize = 8;
+const BY_VIOLATION: usize = 2;
 /// Limit of steps without gain: a solve that goes on without is not ended by more of them.
 const PLATEAU: usize = 50;
-/// How many times the tolerance is tightened if the point is not accepted.
-const TIGHTENINGS: usize = 8;
 /// A refusal does not depend on the residual if its violation is still above this part of the previous one.
 const STAYS: f64 = 0.5;
 
@@ -21,7 +20,6 @@ pub struct Stop {
     /// Factor on the allowance for rounding.
     pub noise: f64,
     tightenings: usize,
-    refined: bool,
     /// Violation reported by the last refusal.
     missed: Option<f64>,
     /// Smallest residual on the current face, the number of steps at that time, and the face.
@@ -36,7 +34,6 @@ impl Stop {
             residual,
             noise: 1.0,
             tightenings: 0,
-            refined: false,
             missed: None,
             best: f64::INFINITY,
             met: 0,
@@ -56,29 +53,16 @@ impl Stop {
         steps - self.met > (2 * unknowns + 20).min(PLATEAU) && Rung::Plateau.is_tried()
     }
 
-    /// P1.2: once, if the scale is dominated by rigid travel: from now on the residual is relative to the scale without
-    /// travel.
-    pub fn refine(&mut self, tolerance: f64, length: Option<f64>) -> bool {
-        let target = length.map_or(f64::INFINITY, |length| tolerance * length);
-        let refines = !self.refined && TRAVEL * target < self.residual && Rung::Refine.is_tried();
-        if refines {
-            self.residual = target;
-        }
-        self.refined |= refines;
-        refines
-    }
-
-    /// P1.3: the violation is about as large as at the previous refusal, when the residual was larger.
+    /// P1.2: the violation is about as large as at the previous refusal, when the residual was larger.
     pub fn stays(&mut self, missed: Option<f64>) -> bool {
         let before = std::mem::replace(&mut self.missed, missed);
         missed.zip(before).is_some_and(|(now, before)| now > STAYS * before)
     }
 
-    /// P1.4: tightens by the reported violation at the first two refusals; false if steps cannot correct a violation of
-    /// this size.
+    /// P1.3: tightens by the reported violation; false if steps cannot correct a violation of this size.
     pub fn tighten_by(&mut self, missed: Option<f64>) -> bool {
-        let missed =
-            missed.filter(|missed| *missed < MISSED && self.tightenings < 2 && Rung::TightenBy.is_tried());
+        let missed = missed.filter(|missed| *missed < MISSED && self.tightenings < BY_VIOLATION);
+        let missed = missed.filter(|_| Rung::TightenBy.is_tried());
         if let Some(missed) = missed {
             self.tightenings += 1;
             self.residual *= (0.4 / missed).min(0.4);
@@ -86,7 +70,7 @@ impl Stop {
         missed.is_some()
     }
 
-    /// P1.5: the verdict; none if the target and the allowance for rounding were reduced to a tenth and the run
+    /// P1.4: the verdict; none if the target and the allowance for rounding were reduced to a tenth and the run
     /// continues.
     pub fn tighten(&mut self, accepted: bool) -> Option<Verdict> {
         if accepted {
