@@ -1,6 +1,6 @@
 //! If the forces of an answer leave motions free, the library returns the answer of least travel.
 
-use crate::certificate::BodyData;
+use crate::certificate::{BodyData, Judgement};
 use crate::error::{Kind, Result};
 use crate::linalg::vector::axpy;
 use crate::linalg::Matrix;
@@ -24,17 +24,7 @@ impl<'a> Recovery<'a> {
     /// only the original answer passes. If the host or the time limit stops it, the answer is unchanged and the verdict
     /// names the reason.
     pub fn bring_to_rest(&self, ending: &mut Ending) -> Result<()> {
-        let Ending { solution, recovered, deformed, .. } = &*ending;
-        let at_rest = match solution.undetermined > 0 || self.has_rounding(recovered)? {
-            true => self.at_rest(recovered, &solution.x, deformed),
-            false => return Ok(()),
-        };
-        let judged = at_rest.and_then(|at_rest| {
-            let Some(at_rest) = at_rest else { return Ok(None) };
-            let judgement = self.judged(&at_rest.recovered)?;
-            Ok(Some((at_rest, judgement)))
-        });
-        let judged = match judged {
+        let judged = match self.judged_at_rest(ending) {
             Ok(judged) => judged,
             Err(error) => {
                 ending.solution.verdict = Verdict::of_refusal(error)?;
@@ -49,13 +39,21 @@ impl<'a> Recovery<'a> {
         Ok(())
     }
 
-    /// Some forces are rounding.
-    fn has_rounding(&self, answer: &Recovered) -> Result<bool> {
-        let held = self.without_force(answer)?;
-        let members = self.ready.rows.scaling.grouping.members();
-        Ok(members
-            .filter(|(i, _)| *i < answer.lambda.len())
-            .any(|(i, (group, _))| held[group] && answer.lambda[i] > 0.0))
+    /// The answer of least travel and its judgement; none if all motions are held by forces that are more than rounding.
+    fn judged_at_rest(&self, ending: &Ending) -> Result<Option<(AtRest, Judgement)>> {
+        if self.friction {
+            return Ok(None);
+        }
+        let held = self.without_force(&ending.recovered)?;
+        let (mut members, lambda) = (self.ready.rows.scaling.grouping.members(), &ending.recovered.lambda);
+        let is_rounding =
+            members.any(|(i, (group, _))| held[group] && lambda.get(i).is_some_and(|force| *force > 0.0));
+        if ending.solution.undetermined == 0 && !is_rounding {
+            return Ok(None);
+        }
+        let Some(at_rest) = self.at_rest(&held, ending)? else { return Ok(None) };
+        let judgement = self.judged(&at_rest.recovered)?;
+        Ok(Some((at_rest, judgement)))
     }
 
     /// Rows of the dual whose forces hold nothing.
@@ -64,15 +62,12 @@ impl<'a> Recovery<'a> {
         without_force(self.ready, self.faces.qp.g_transposed, &load, answer.view())
     }
 
-    /// The answer of least travel with its amplitudes, for the forces x; none if rows resist every motion. The distance
+    /// The answer of least travel, with rows without force `held`; none if rows resist every motion. The distance
     /// that the method has travelled has no influence, not even through rounding.
-    fn at_rest(&self, answer: &Recovered, x: &[f64], deformed: &[f64]) -> Result<Option<AtRest>> {
-        if self.friction {
-            return Ok(None);
-        }
-        let dual = &self.ready.dual;
-        let held = self.without_force(answer)?;
-        let mut face = AnswerFace::of(&self.faces.qp, &held)?;
+    fn at_rest(&self, held: &[bool], ending: &Ending) -> Result<Option<AtRest>> {
+        let Ending { solution, deformed, recovered: answer, .. } = ending;
+        let (dual, x) = (&self.ready.dual, &solution.x[..]);
+        let mut face = AnswerFace::of(&self.faces.qp, held)?;
         let free = face.undetermined()?;
         if free.cols == 0 {
             return Ok(None);
