@@ -94,7 +94,7 @@ settings! {
     fault_injection: i64 = I64(0), 0.0..=1.0,
         c"1: the next feti_solve fails with FETI_INTERNAL, so that a host can test its own error handling.";
     without: i64 = I64(0), 0.0..=MANY,
-        c"For tests: second tries that a solve leaves out, the sum of 2^k for number k of the list in docs/reliability.md.";
+        c"For tests: second tries that a solve leaves out, the sum of 2^k for number k of the list that make rungs prints.";
     preconditioner: Preconditioning = Str(Preconditioning::WORDS[0]), NO_RANGE,
         c"Preconditioner of the dual problem: automatic (lumped if products with F are expensive, otherwise none); none; lumped (stiffness of the constrained unknowns with all other unknowns held); dirichlet (all other unknowns free: fewer steps, but one more factorisation of each body). For a body with functions of the host, the preconditioner uses the diagonal.";
     dual_operator: OperatorForm = Str(OperatorForm::WORDS[0]), NO_RANGE,

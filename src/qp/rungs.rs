@@ -50,15 +50,15 @@ rungs! {
     Finish: "finish", "S13: delicate answers are corrected";
     Inner: "steps without product", "F4: steps to new faces with the pairs at hand";
     Turned: "turned", "F6: amplitudes fitted once more at the end";
-    ShortPath: "short path", "F7.2: smoothed laws until the states are known";
-    Supports: "weak supports", "F7.3: weak supports with kept pairs";
-    SupportPath: "path on supports", "F7.3: a path where Newton's method fails on supports";
-    Sticking: "all sticking", "F7.4: from the answer in which all closed nodes stick";
+    ShortPath: "short path", "F7: smoothed laws until the states are known";
+    Supports: "weak supports", "F7: weak supports with kept pairs";
+    SupportPath: "path on supports", "F7: a path where Newton's method fails on supports";
+    Sticking: "all sticking", "F7: from the answer in which all closed nodes stick";
     LongPath: "long path", "F7: the path to rounding with relaxed bounds";
-    DensePath: "dense path", "F7.6: dense systems along the smoothed laws";
-    DenseRelaxed: "dense path, relaxed", "F7.6: the same with relaxed bounds";
-    Combinations: "combinations", "F7.6: all combinations of states";
-    DenseSupports: "dense supports", "F7.6: weak supports with dense systems";
+    DensePath: "dense path", "F7: dense systems along the smoothed laws";
+    DenseRelaxed: "dense path, relaxed", "F7: the same with relaxed bounds";
+    Combinations: "combinations", "F7: all combinations of states";
+    DenseSupports: "dense supports", "F7: weak supports with dense systems";
     Tighter: "tighter laws", "F8: a smaller merit for a refused point";
     Corrected: "corrected", "F8: a refused point is corrected by the data of the host";
 }

@@ -30,13 +30,15 @@ pub fn without_force(ready: &Ready, coarse: &Csr, load: &[f64], answer: Candidat
         weighted_norm(&v[range.clone()], |j| 1.0 / rows.metric[range.start + j])
     };
     let everywhere = size(load, &(0..load.len())).hypot(size(&push, &(0..load.len())));
-    let nothing = |range: &Range<usize>, part: f64, idle: f64| {
-        let own = size(load, range);
-        let idle = if own == 0.0 { idle * everywhere } else { 0.0 };
-        (part * (own + size(&push, range))).max(idle)
+    let sizes: Vec<[f64; 2]> =
+        island.ranges.iter().map(|range| [size(load, range), size(&push, range)]).collect();
+    let of_bodies = |part: f64, idle: f64| -> Vec<f64> {
+        let nothing = |[own, push]: &[f64; 2]| {
+            let idle = if *own == 0.0 { idle * everywhere } else { 0.0 };
+            (part * (own + push)).max(idle)
+        };
+        sizes.iter().map(nothing).collect()
     };
-    let of_bodies =
-        |part, idle| -> Vec<f64> { island.ranges.iter().map(|range| nothing(range, part, idle)).collect() };
     let mut held: Vec<bool> = (0..rows.groups()).map(|group| rows.kind(group) != RowKind::Equality).collect();
     let mut small = held.clone();
     let (rounding, weak) = (of_bodies(ROUNDING, IDLE), of_bodies(SMALL, SMALL));

@@ -84,10 +84,7 @@ pub fn solve_island(
     threads::with_team(case.threads(), || {
         let (ended, tries) =
             qp::during(case.model.settings.without as u64, || solve_held(case, number, start, stops, voice));
-        ended.map(|mut solved| {
-            solved.tries = tries;
-            solved
-        })
+        Ok(Solved { tries, ..ended? })
     })
 }
 

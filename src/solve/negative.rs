@@ -170,13 +170,9 @@ impl<'a> Search<'a, '_> {
         if let (Some(last), true) = (&known.last, step.is_trial && self.recovery.friction) {
             return Ok(Next::Step(self.back(last, &step.b)?));
         }
-        if let Verdict::Infeasible { .. } = solution.verdict {
+        if matches!(solution.verdict, Verdict::Infeasible { .. }) && Rung::FirstProof.is_tried() {
             let e = self.negative.resultants(self.qp.e, &step.b);
-            let unstopped = match Rung::FirstProof.is_tried() {
-                true => self.unstopped(Qp { e: &e, ..self.qp }, &solution.x)?,
-                false => None,
-            };
-            if let Some(motion) = unstopped {
+            if let Some(motion) = self.unstopped(Qp { e: &e, ..self.qp }, &solution.x)? {
                 return Err(indefinite(self.case, &motion.v, f64::INFINITY)?);
             }
         }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::ops::Range;
 
 use feti_contact::error::{Error, Kind, Proof};
 use feti_contact::solver::{FrictionState, Outcome, Problem, Report, RowKind};
@@ -28,6 +29,12 @@ const UNSOLVED: f64 = 0.01;
 
 fn asked(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
+}
+
+/// The seeds of a run: BATTERY problems from BATTERY_SEED on; otherwise so many from 0 on.
+pub fn seeds(problems: u64) -> Range<u64> {
+    let first = asked("BATTERY_SEED").unwrap_or(FIRST);
+    first..first + asked("BATTERY").unwrap_or(problems)
 }
 
 fn sizes() -> &'static Sizes {
@@ -199,11 +206,9 @@ fn of_slide(drawn: &Drawn, error: &Error, text: String) -> (End, String) {
 
 #[test]
 fn problems_with_friction_are_solved_rightly_or_not_at_all() {
-    let first = asked("BATTERY_SEED").unwrap_or(FIRST);
-    let seeds = first..first + asked("BATTERY").unwrap_or(PROBLEMS);
     let mut classes: BTreeMap<&str, BTreeMap<End, usize>> = BTreeMap::new();
     let (mut count, mut lines) = (BTreeMap::<End, usize>::new(), Vec::new());
-    for seed in seeds {
+    for seed in seeds(PROBLEMS) {
         let drawn = case(seed, sizes());
         let (end, text) = ended(&drawn);
         *classes.entry(drawn.class).or_default().entry(end).or_default() += 1;
@@ -286,9 +291,7 @@ fn one_problem_in_full() {
 #[test]
 #[ignore]
 fn what_each_second_try_saves() {
-    let first = asked("BATTERY_SEED").unwrap_or(FIRST);
-    let seeds = first..first + asked("BATTERY").unwrap_or(PROBLEMS);
-    let table = rungs::table(seeds, |seed, without| {
+    let table = rungs::table(seeds(PROBLEMS), |seed, without| {
         let (end, _, report) = ended_without(&case(seed, sizes()), without);
         Some(Ended { solved: end != End::Unsolved, wrong: end == End::Wrong, report })
     });

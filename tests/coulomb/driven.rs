@@ -8,10 +8,12 @@ use decks::{Block, Body, Csr, Deck, Friction};
 use feti_contact::error::{Error, Kind, Proof};
 use feti_contact::solver::{FrictionState, Modes, Outcome, Problem};
 
-use crate::battery::answer;
+use crate::battery::{answer, seeds};
 use crate::rungs::{self, Ended};
 use crate::{hand_over, judge};
 
+/// Number of pressed blocks of the ordinary run.
+const BLOCKS: u64 = 300;
 /// An answer is right if its worst error is below this part of what is there.
 const RIGHT: f64 = 1e-8;
 
@@ -172,11 +174,10 @@ pub fn pressed(seed: u64) -> Deck {
 
 #[test]
 fn pressed_blocks_with_negative_stiffness_rest_or_are_proved_not_to() {
-    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
-    let first: u64 = asked("BATTERY_SEED").unwrap_or(0);
     let (mut counts, mut lines) = (BTreeMap::<String, usize>::new(), Vec::new());
-    let all = asked("BATTERY").unwrap_or(300);
-    for seed in first..first + all {
+    let seeds = seeds(BLOCKS);
+    let all = seeds.end - seeds.start;
+    for seed in seeds {
         let deck = pressed(seed);
         let mut problem = soft(&deck);
         let (end, fails) = match problem.solve() {
@@ -191,9 +192,7 @@ fn pressed_blocks_with_negative_stiffness_rest_or_are_proved_not_to() {
         *counts.entry(end.clone()).or_default() += 1;
         lines.extend(fails.map(|what| format!("{seed}: {end} {what}")));
     }
-    if asked("BATTERY").is_some() {
-        println!("{counts:?}\n{}", lines.join("\n"));
-    }
+    println!("{counts:?}\n{}", lines.join("\n"));
     assert!(lines.is_empty(), "{counts:?}\n{}", lines.join("\n"));
     let of = |end: &str| counts.get(end).copied().unwrap_or(0) as u64;
     assert!(of("OK") > all / 2 && 200 * of("Stalled") <= all, "{counts:?}");
@@ -216,9 +215,7 @@ fn pushed_blocks_without_friction_are_named_with_a_motion_that_proves_it() {
 #[test]
 #[ignore]
 fn what_each_second_try_saves() {
-    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
-    let first: u64 = asked("BATTERY_SEED").unwrap_or(0);
-    let table = rungs::table(first..first + asked("BATTERY").unwrap_or(300), |seed, without| {
+    let table = rungs::table(seeds(BLOCKS), |seed, without| {
         let mut deck = pressed(seed);
         if seed % 2 == 1 {
             deck.friction = Friction::none(deck.friction.dim, deck.dofs());
