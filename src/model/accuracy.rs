@@ -1,12 +1,12 @@
-//! The accuracy of the host's data: of right-hand sides, by the length of the problem, and of normals, weights and
+//! The accuracy of the host's data: of right-hand sides, by the lengths of bodies, and of normals, weights and
 //! coordinates, by option `data_accuracy`.
 
 use std::ops::Range;
 
 use crate::body::Body;
-use crate::constraints::{RowKind, RowSet};
+use crate::constraints::RowKind;
 use crate::error::Result;
-use crate::linalg::vector::NOISE;
+use crate::linalg::vector::{norm_max, NOISE};
 use crate::model::contents::Model;
 use crate::model::row_sets::empty_row_contradicts;
 
@@ -25,29 +25,44 @@ const CHAIN: usize = 8;
 /// Number of points whose digits are counted.
 const SAMPLE: usize = 256;
 
-/// What counts as rounding of the host's data.
+/// What counts as rounding of the host's normals, weights and coordinates.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Accuracy {
-    /// Right-hand sides below this length times the largest entry of their row: 64 eps of the length of the problem.
-    pub length: f64,
-    /// Of normals, weights and coordinates, relative to their terms: a motion that each row resists by less than this part
-    /// of its terms is undetermined, and a part of the load along it up to this share of the load is rounding.
+    /// Relative to their terms: a motion that each row resists by less than this part of its terms is undetermined, and a
+    /// part of the load along it up to this share of the load is rounding.
     pub data: f64,
 }
 
+/// The lengths of which right-hand sides are differences.
+pub struct Lengths<'a> {
+    model: &'a Model,
+    /// Of every body, its largest distance between coordinates and its motion `sum_j |f_j| / K_jj` by its load, K_jj or what
+    /// rows give; 0 without both. A load below 64 eps of the largest is none.
+    of_bodies: Vec<f64>,
+    /// Of the problem: the largest of all bodies and of the lengths `|h| / max |b|` and `-c / max |b|` that rows demand;
+    /// without loads and coordinates also the smallest gap. Other gaps may be far: they say nothing.
+    whole: f64,
+    /// Of every unknown, the number of equality rows with it.
+    ties: Vec<u32>,
+}
+
 impl Model {
-    /// The length of a problem is the largest of its distances between coordinates, motions `sum_j |f_j| / K_jj` of bodies
-    /// by loads, K_jj or what rows give, and lengths `|h| / max |b|` and `-c / max |b|` demanded by rows; without loads and coordinates also the
-    /// smallest gap. Other gaps may be far: they say nothing.
-    pub fn accuracy(&self) -> Accuracy {
-        let (mut length, held) = (0.0f64, self.held());
-        for (body, start) in self.bodies.iter().map(|given| &given.body).zip(&self.offsets) {
-            if let (Some(load), Some(_)) = (&body.load, body.k()) {
-                let moved = load.iter().zip(&held[*start..]).map(|(f, held)| f.abs() / held);
-                length = length.max(moved.sum());
-            }
-            length = body.coordinates.as_ref().map_or(length, |given| length.max(given.length()));
-        }
+    pub fn lengths(&self) -> Lengths<'_> {
+        let held = self.held();
+        let loads = self.bodies.iter().filter_map(|given| given.body.load.as_ref());
+        let least = NOISE * loads.map(|load| norm_max(load)).fold(0.0, f64::max);
+        let of_body = |(body, start): (&Body, &usize)| {
+            let by_load = match (&body.load, body.k()) {
+                (Some(load), Some(_)) if norm_max(load) > least => {
+                    load.iter().zip(&held[*start..]).map(|(f, held)| f.abs() / held).sum()
+                }
+                _ => 0.0f64,
+            };
+            body.coordinates.as_ref().map_or(by_load, |given| by_load.max(given.length()))
+        };
+        let of_bodies: Vec<f64> =
+            self.bodies.iter().map(|given| &given.body).zip(&self.offsets).map(of_body).collect();
+        let mut length = of_bodies.iter().copied().fold(0.0, f64::max);
         let gaps = || {
             let with_entries = (0..self.contact.len()).filter(|&i| !self.contact.is_empty_row(i));
             with_entries.map(|i| self.contact.rhs[i] / self.contact.largest_entry(i))
@@ -61,7 +76,9 @@ impl Model {
             .map(|i| self.equalities.rhs[i].abs() / self.equalities.largest_entry(i))
             .chain(gaps().map(|gap| -gap))
             .fold(length, f64::max);
-        Accuracy { length: NOISE * length, data: self.settings.data_accuracy }
+        let mut ties = vec![0; held.len()];
+        self.equalities.matrix.col.iter().for_each(|&j| ties[j] += 1);
+        Lengths { model: self, of_bodies, whole: length, ties }
     }
 
     /// What holds every unknown, force / length: K_jj, or the best of its rows as far as the other unknowns of this row are held,
@@ -103,24 +120,6 @@ impl Model {
         let printed = given.map(|coordinates| of_last_digit(coordinates.places())).fold(0.0, f64::max);
         self.settings.data_accuracy.max(printed.min(MOST))
     }
-
-    /// Refuses rows without entries whose right-hand side does not satisfy them.
-    pub fn check_empty_rows(&self, accuracy: Accuracy) -> Result<()> {
-        for (kind, first) in [(RowKind::Inequality, 0), (RowKind::Equality, self.contact.len())] {
-            let rows = self.rows(kind);
-            let largest = rows.matrix.val.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-            let largest = if largest > 0.0 { largest } else { 1.0 };
-            let checked = rows.check_empty_rows(kind, accuracy.length * largest);
-            checked.map_err(|mut error| {
-                if accuracy.length == 0.0 {
-                    error.what += ", and no load, gap or coordinate of the problem tells whether its right-hand side is \
-                                   rounding: give coordinates, or a right-hand side of 0";
-                }
-                empty_row_contradicts(error, first)
-            })?;
-        }
-        Ok(())
-    }
 }
 
 /// Twice the unit of the last digit of coordinates that have been rounded to a few decimal digits, relative to the distance of
@@ -155,20 +154,61 @@ impl Accuracy {
     pub fn marginal(self) -> f64 {
         MARGINAL * self.data
     }
+}
 
-    /// The right-hand side of row i of `rows`; 0 if it demands a motion and is rounding. Gaps that are open demand nothing.
-    pub fn rhs(self, kind: RowKind, rows: &RowSet, i: usize) -> f64 {
-        let c = rows.rhs[i];
+impl Lengths<'_> {
+    pub fn model(&self) -> &Model {
+        self.model
+    }
+
+    /// The rounding of the right-hand side of row i of a kind, times its largest entry: 64 eps of the longest body that it
+    /// touches. Where equality rows tie each of its unknowns, or its bodies have no length, that of the problem: there rounding
+    /// contradicts, elsewhere it is as harmless as it is small.
+    pub fn rounding(&self, kind: RowKind, i: usize) -> f64 {
+        let (rows, ends) = (self.model.rows(kind), &self.model.offsets[1..]);
+        let itself = u32::from(kind == RowKind::Equality);
+        let is_tied = rows.matrix.row(i).all(|(j, _)| self.ties[j] > itself);
+        let bodies = rows.matrix.row(i).map(|(j, _)| ends.partition_point(|end| *end <= j));
+        let own = bodies.map(|p| self.of_bodies[p]).fold(0.0, f64::max);
+        let length = if is_tied || own == 0.0 { self.whole } else { own };
+        NOISE * length * rows.largest_entry(i)
+    }
+
+    /// The right-hand side of row i of a kind; 0 if it demands a motion and is rounding. Gaps that are open demand nothing.
+    pub fn rhs(&self, kind: RowKind, i: usize) -> f64 {
+        let c = self.model.rows(kind).rhs[i];
         let demands = match kind {
             RowKind::Inequality => c < 0.0,
             RowKind::Equality => c != 0.0,
             RowKind::Tangential => false,
         };
-        let limit = self.length * if demands { rows.largest_entry(i) } else { 0.0 };
+        if !demands {
+            return c;
+        }
+        let limit = self.rounding(kind, i);
         if (LAST_DIGIT / NOISE * limit..limit).contains(&c.abs()) {
             0.0
         } else {
             c
         }
+    }
+
+    /// Refuses rows without entries whose right-hand side does not satisfy them.
+    pub fn check_empty_rows(&self) -> Result<()> {
+        let (model, length) = (self.model, self.whole);
+        for (kind, first) in [(RowKind::Inequality, 0), (RowKind::Equality, model.contact.len())] {
+            let rows = model.rows(kind);
+            let largest = rows.matrix.val.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+            let largest = if largest > 0.0 { largest } else { 1.0 };
+            let checked = rows.check_empty_rows(kind, NOISE * length * largest);
+            checked.map_err(|mut error| {
+                if length == 0.0 {
+                    error.what += ", and no load, gap or coordinate of the problem tells whether its right-hand side is \
+                                   rounding: give coordinates, or a right-hand side of 0";
+                }
+                empty_row_contradicts(error, first)
+            })?;
+        }
+        Ok(())
     }
 }

@@ -15,7 +15,7 @@ mod settings;
 mod settings_text;
 mod words;
 
-pub use accuracy::Accuracy;
+pub use accuracy::{Accuracy, Lengths};
 pub use contents::{BodyRevisions, GivenBody, Model, Revisions, Sizes};
 pub use joints::Joint;
 pub use parts::{Part, Parts};

@@ -9,7 +9,7 @@ use crate::certificate::Metric;
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
-use crate::model::{Accuracy, Method, Model, Preconditioning, Settings};
+use crate::model::{Lengths, Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::qp::friction::PairsBetween;
@@ -34,15 +34,15 @@ impl Prepared {
         let begun = Instant::now();
         self.follow(model);
         model.check_complete()?;
-        let accuracy = model.accuracy();
-        model.check_empty_rows(accuracy)?;
+        let lengths = model.lengths();
+        lengths.check_empty_rows()?;
         if self.is_up_to_date(model) {
-            self.refresh_gaps(model, accuracy);
+            self.refresh_gaps(&lengths);
             return Ok(());
         }
         self.release();
         let mut islands = islands(model)?;
-        islands.iter_mut().for_each(|island| island.refresh(model, accuracy));
+        islands.iter_mut().for_each(|island| island.refresh(&lengths));
         let mut rows = reserved(islands.len(), "groups of bodies")?;
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
         let mut pilots = vec![None; model.bodies.len()];
@@ -60,7 +60,7 @@ impl Prepared {
             }
             let mut own = DualRows::of(island, values, coupled(&model.settings))?;
             own.uneven |= !carried.is_empty();
-            own.level_gaps(island);
+            own.level_gaps(island, &lengths);
             let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix, own.first_tangential());
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
             rows.push(own);
@@ -91,13 +91,13 @@ impl Prepared {
     }
 
     /// Updates the gaps of the islands.
-    pub fn refresh_gaps(&mut self, model: &Model, accuracy: Accuracy) {
+    pub fn refresh_gaps(&mut self, lengths: &Lengths) {
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
         for ready in islands {
-            ready.island.refresh(model, accuracy);
-            ready.rows.level_gaps(&mut ready.island);
+            ready.island.refresh(lengths);
+            ready.rows.level_gaps(&mut ready.island, lengths);
             let Some(whole) = &mut ready.whole else { continue };
-            whole.island.refresh(model, accuracy);
+            whole.island.refresh(lengths);
             let (level, own) = (&ready.island.contact.rows, &mut whole.island.contact.rows);
             own.rhs.clone_from(&level.rhs);
             own.rounding.clone_from(&level.rounding);

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
-use crate::model::{Accuracy, Model};
+use crate::model::{Accuracy, Lengths, Model};
 use crate::platform::memory::{copied, headroom, reserved, zeros};
 
 const WHAT: &str = "groups of bodies";
@@ -148,7 +148,8 @@ impl Island {
     }
 
     /// Takes over the right-hand sides of the host, without those that are rounding, and its laws of friction.
-    pub fn refresh(&mut self, model: &Model, accuracy: Accuracy) {
+    pub fn refresh(&mut self, lengths: &Lengths) {
+        let model = lengths.model();
         for (members, kind) in [
             (&mut self.contact, RowKind::Inequality),
             (&mut self.equalities, RowKind::Equality),
@@ -159,11 +160,11 @@ impl Island {
             own.rounding.resize(numbers.len(), 0.0);
             let of_own = own.rhs.iter_mut().zip(&mut own.rounding);
             for ((c, taken), &i) in of_own.zip(&*numbers) {
-                *c = accuracy.rhs(kind, rows, i);
+                *c = lengths.rhs(kind, i);
                 *taken = if *c == rows.rhs[i] { 0.0 } else { rows.rhs[i].abs() };
             }
         }
-        self.accuracy = accuracy;
+        self.accuracy = Accuracy { data: model.settings.data_accuracy };
         for (own, &number) in self.friction.nodes.iter_mut().zip(&self.friction.numbers) {
             let (coefficient, bound) = law(model, number);
             *own = FrictionNode { coefficient, bound, ..*own };

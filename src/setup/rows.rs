@@ -4,6 +4,7 @@ use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
 use crate::error::Result;
 use crate::linalg::vector::NOISE;
 use crate::linalg::Csr;
+use crate::model::Lengths;
 use crate::setup::islands::{Island, Members};
 use crate::setup::scaling::Scaling;
 
@@ -102,8 +103,8 @@ impl DualRows {
 
     /// Parallel contact rows whose gaps agree to the accuracy of the data have the tightest of these gaps: what is taken from the
     /// others is rounding.
-    pub fn level_gaps(&self, island: &mut Island) {
-        let (accuracy, rows) = (island.accuracy, &mut island.contact.rows);
+    pub fn level_gaps(&self, island: &mut Island, lengths: &Lengths) {
+        let Members { numbers, rows } = &mut island.contact;
         let mut tightest = vec![f64::INFINITY; self.groups()];
         let members = || {
             let contact = self.scaling.grouping.members().take_while(|(i, _)| *i < self.contact);
@@ -115,7 +116,7 @@ impl DualRows {
         }
         for (i, (group, _)) in members() {
             let (given, level) = (rows.rhs[i], tightest[group] / scale[i]);
-            let slack = (accuracy.length * rows.largest_entry(i)).max(NOISE * given.abs());
+            let slack = lengths.rounding(RowKind::Inequality, numbers[i]).max(NOISE * given.abs());
             if scale[i] * given != tightest[group] && given - level <= slack {
                 rows.rhs[i] = level;
                 rows.rounding[i] += (given - level).abs();

@@ -89,6 +89,20 @@ fn a_gap_of_rounding_at_a_tied_unknown_contradicts_nothing_in_a_group_without_lo
     }
 }
 
+/// An interference that only the motion of another, far softer body could call rounding.
+#[test]
+fn an_interference_beside_a_body_that_travels_far_is_kept() {
+    for (load, gap) in [(1e9, -5e-6), (1e12, -5e-3), (1e13, -5e-2)] {
+        let mut problem = pairs(1.0, &[[-0.6, 0.0], [load, 0.0]]);
+        add(&mut problem, RowKind::Inequality, &[(0, -1.0)], 1.0);
+        add(&mut problem, RowKind::Inequality, &[(1, -1.0)], gap);
+        assert!(is_solved(problem.solve()));
+        let u = problem.displacements().unwrap();
+        assert!((u[1] + gap).abs() < 1e-14, "{load:e} {u:?}");
+        assert!((2.0 * u[0] - u[1] + 0.6).abs() < 1e-12, "{load:e} {u:?}");
+    }
+}
+
 /// An interference that only a gap far beyond reach could call rounding is none.
 #[test]
 fn a_small_interference_beside_a_gap_that_never_closes_is_kept() {
