@@ -2,14 +2,13 @@
 
 use crate::certificate::{BodyData, Judgement};
 use crate::error::{Kind, Result};
-use crate::linalg::vector::axpy;
 use crate::linalg::Matrix;
 use crate::platform::interrupt;
 use crate::qp::{AnswerFace, Verdict};
 use crate::setup::Island;
 use crate::solve::held::without_force;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
-use crate::solve::travel::{travel, Moving, OpenMotions, Shift};
+use crate::solve::travel::{travel, Moving, OpenMotions, Rest};
 
 /// The answer of least travel.
 struct AtRest {
@@ -72,37 +71,41 @@ impl<'a> Recovery<'a> {
         if free.cols == 0 {
             return Ok(None);
         }
-        let (mut u, undetermined) = (deformed.to_vec(), free.cols);
-        let mut open = self.gaps_left(&[&u], &[x]);
+        let undetermined = free.cols;
+        let mut open = self.gaps_left(&[deformed], &[x]);
         // (F x)_s = x_s on the springs of bodies
         let springs = open.len() - dual.springs..;
         open[springs.clone()].copy_from_slice(&x[springs]);
         let mut alpha = dual.balanced(x, &face.fitted(&open)?);
-        axpy(1.0, &dual.rigid_motion(&alpha, u.len()), &mut u);
         let mut forces = answer.lambda.clone();
         for (i, member) in self.ready.rows.scaling.grouping.member[..forces.len()].iter().enumerate() {
             if member.is_some_and(|(group, _)| held[group]) {
                 forces[i] = 0.0;
             }
         }
-        let way = interrupt::part("least travel", || self.way_to_rest(&u, &forces, free))?;
-        let Some(change) = way else { return Ok(None) };
-        axpy(1.0, &change.u, &mut u);
+        let way = interrupt::part("least travel", || {
+            self.way_to_rest((deformed, dual.amplitudes(&alpha)), &forces, free)
+        })?;
+        let Some(Rest { u, amplitudes }) = way else { return Ok(None) };
         for k in 0..self.data.bodies.len() {
-            let modes = dual.modes_of(k);
-            axpy(dual.size_of(k), &change.amplitudes[modes.clone()], &mut alpha[modes]);
+            dual.modes_of(k).for_each(|mode| alpha[mode] = dual.size_of(k) * amplitudes[mode]);
         }
         Ok(Some(AtRest { recovered: Recovered { u, ..answer.clone() }, alpha, undetermined }))
     }
 
-    /// The motion that brings u to rest along the free motions; none if rounding leaves no such motion.
-    fn way_to_rest(&self, u: &[f64], lambda: &[f64], mut free: Matrix) -> Result<Option<Shift>> {
+    /// The place of least travel along the free motions; none if rounding leaves no such place.
+    fn way_to_rest(
+        &self,
+        (deformed, amplitudes): (&[f64], Vec<f64>),
+        lambda: &[f64],
+        mut free: Matrix,
+    ) -> Result<Option<Rest>> {
         let (dual, Island { ranges, .. }) = (&self.ready.dual, &self.ready.island);
         for j in 0..free.cols {
             let own = dual.amplitudes(free.col(j));
             free.col_mut(j).copy_from_slice(&own);
         }
-        let mut grounded = vec![false; u.len()];
+        let mut grounded = vec![false; deformed.len()];
         self.data.grounded().for_each(|j| grounded[j] = true);
         let moving = |(k, body): (usize, &BodyData<'a>)| Moving {
             unknowns: ranges[k].clone(),
@@ -121,7 +124,7 @@ impl<'a> Recovery<'a> {
             compliance: &contact.compliance,
             lambda,
         };
-        match travel(&open, u) {
+        match travel(&open, deformed, amplitudes) {
             Err(error) if matches!(error.kind, Kind::Cancelled | Kind::TimeOver | Kind::Callback) => {
                 Err(error)
             }

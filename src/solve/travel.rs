@@ -1,11 +1,12 @@
 //! The answer of least travel, among all answers that differ by motions which nothing resists:
 //!
 //! ```text
-//! u = u0 + N a,   a = argmin |u0 + N a|_D   subject to   B (u0 + N a) <= c + C lambda
+//! u = v + R b + N a,   a = argmin |u|_D   subject to   B u <= c + C lambda
 //! ```
 //!
-//! N = R A are the motions that rows with lambda > 0 and equality rows do not resist, exactly 0 on grounded unknowns. The answer is
-//! unique and does not depend on the choice of K+. No matrix over all unknowns is formed.
+//! v is the deformation and R b the rigid motion of the given answer; N = R A are the motions that rows with lambda > 0 and
+//! equality rows do not resist, exactly 0 on grounded unknowns where they are rounding. The answer is unique and does not depend
+//! on the choice of K+. No matrix over all unknowns is formed.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -51,16 +52,15 @@ pub struct OpenMotions<'a> {
     pub lambda: &'a [f64],
 }
 
-/// The change of the answer.
-pub struct Shift {
-    /// `N a`
+/// The answer of least travel.
+pub struct Rest {
     pub u: Vec<f64>,
-    /// `A a` over all modes, without the D-orthonormalisation.
+    /// Of the null spaces, over all modes.
     pub amplitudes: Vec<f64>,
 }
 
-/// The change from `u` to the answer of least travel.
-pub fn travel(open: &OpenMotions, u: &[f64]) -> Result<Shift> {
+/// The answer of least travel from `deformed` + R `amplitudes` on. Only their sum moves u: a far way there and back leaves nothing.
+pub fn travel(open: &OpenMotions, deformed: &[f64], mut amplitudes: Vec<f64>) -> Result<Rest> {
     let null_spaces: Vec<Cow<Matrix>> = open.bodies.iter().map(|body| open.grounded_out(body)).collect();
     let groups = open.orthonormal(&null_spaces)?;
     let of_motion: Vec<(usize, usize)> = groups
@@ -69,23 +69,25 @@ pub fn travel(open: &OpenMotions, u: &[f64]) -> Result<Shift> {
         .flat_map(|(g, group)| (0..group.motions.cols).map(move |j| (g, j)))
         .collect();
     let motions = open.along_rows(&null_spaces, &groups);
-    let mut change = Shift { u: vec![0.0; u.len()], amplitudes: vec![0.0; open.amplitudes.rows] };
+    let placed = |amplitudes: &[f64]| {
+        let mut u = deformed.to_vec();
+        for (body, null_space) in open.bodies.iter().zip(&null_spaces) {
+            null_space.mul_add(1.0, &amplitudes[body.modes.clone()], &mut u[body.unknowns.clone()]);
+        }
+        u
+    };
+    let mut u = placed(&amplitudes);
     for _ in 0..PASSES {
-        let now: Vec<f64> = u.iter().zip(&change.u).map(|(u, way)| u + way).collect();
-        let spent = open.projections(&null_spaces, &now);
+        let spent = open.projections(&null_spaces, &u);
         let target: Vec<f64> = of_motion.iter().map(|&(g, j)| -groups[g].dot(j, &spent)).collect();
-        let (gap, noise) = open.left(&now);
+        let (gap, noise) = open.left(&u);
         let within =
             Polyhedron { rows: &motions, gap: &gap, target: &target, noise: &noise, rounding: NOISE };
         let a = nearest_point(within)?.point;
-        let mut turn = vec![0.0; open.amplitudes.rows];
-        of_motion.iter().zip(&a).for_each(|(&(g, j), a)| groups[g].add(*a, j, &mut turn));
-        for (body, null_space) in open.bodies.iter().zip(&null_spaces) {
-            null_space.mul_add(1.0, &turn[body.modes.clone()], &mut change.u[body.unknowns.clone()]);
-        }
-        axpy(1.0, &turn, &mut change.amplitudes);
+        of_motion.iter().zip(&a).for_each(|(&(g, j), a)| groups[g].add(*a, j, &mut amplitudes));
+        u = placed(&amplitudes);
     }
-    Ok(change)
+    Ok(Rest { u, amplitudes })
 }
 
 /// D-orthonormal motions of bodies that move together.
@@ -111,13 +113,17 @@ impl MotionGroup {
 }
 
 impl OpenMotions<'_> {
-    /// `R_p`, exactly 0 on grounded unknowns.
+    /// `R_p`, exactly 0 on grounded unknowns where it is rounding. Unknowns that hang softly on stiff ones move with them.
     fn grounded_out<'b>(&self, body: &Moving<'b>) -> Cow<'b, Matrix> {
         let grounded = &self.grounded[body.unknowns.clone()];
         let mut null_space = Cow::Borrowed(body.null_space);
-        for i in (0..grounded.len()).filter(|&i| grounded[i]) {
-            let null_space = null_space.to_mut();
-            (0..null_space.cols).for_each(|j| null_space.set(i, j, 0.0));
+        for j in 0..body.null_space.cols {
+            let rounding = body.rounding * norm_max(body.null_space.col(j));
+            for i in (0..grounded.len()).filter(|&i| grounded[i]) {
+                if null_space.get(i, j).abs() <= rounding {
+                    null_space.to_mut().set(i, j, 0.0);
+                }
+            }
         }
         null_space
     }

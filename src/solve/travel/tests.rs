@@ -17,8 +17,8 @@ impl FreeBlocks {
         Self { null_space, count, metric }
     }
 
-    /// Change and dimension of the kernel; `closed` rows resist.
-    fn solve(&self, rows: &Csr, gaps: &[f64], lambda: &[f64], u: &[f64]) -> (Shift, usize) {
+    /// The answer, its amplitudes from u on, and the dimension of the kernel.
+    fn solve(&self, rows: &Csr, gaps: &[f64], lambda: &[f64], u: &[f64]) -> (Rest, usize) {
         let bodies: Vec<Moving> = (0..self.count)
             .map(|p| Moving {
                 unknowns: 4 * p..4 * p + 4,
@@ -47,7 +47,7 @@ impl FreeBlocks {
             compliance: &vec![0.0; gaps.len()],
             lambda,
         };
-        (travel(&open, u).unwrap(), amplitudes.cols)
+        (travel(&open, u, vec![0.0; 3 * self.count]).unwrap(), amplitudes.cols)
     }
 
     fn length(&self, u: &[f64]) -> f64 {
@@ -66,14 +66,14 @@ fn a_block_slides_back_as_far_as_the_wall_allows_whatever_the_start() {
     rows.push_row([(2, 1.0)]);
     for (slide, wall) in [(3.0, -0.25), (1e6, -0.25), (0.5, f64::INFINITY), (1e9, 1e30)] {
         let u = [slide, 0.1, slide + 0.01, -0.1];
-        let (change, free) = blocks.solve(&rows, &[-0.1, 0.1, wall, 1e20], &[1.0, 2.0, 0.0, 0.0], &u);
-        let x = u[0] + change.u[0];
-        assert!(free == 1 && (u[2] + change.u[2] - x - 0.01).abs() < 1e-9 * slide, "{free} {x}");
-        assert!(change.u[1].abs().max(change.u[3].abs()) <= 1e-15 * slide);
+        let (at_rest, free) = blocks.solve(&rows, &[-0.1, 0.1, wall, 1e20], &[1.0, 2.0, 0.0, 0.0], &u);
+        let x = at_rest.u[0];
+        assert!(free == 1 && (at_rest.u[2] - x - 0.01).abs() < 1e-9 * slide, "{free} {x}");
+        assert!((at_rest.u[1] - 0.1).abs().max((at_rest.u[3] + 0.1).abs()) <= 1e-15 * slide);
         // without the wall: x + 3 (x + 0.01) = 0, the weights being 1 and 3
         let expected = if wall < 0.0 { 0.25 } else { -0.03 / 4.0 };
         assert!((x - expected).abs() <= 1e-15 * slide + 1e-15, "{slide} {wall}: {x}");
-        assert!((change.amplitudes[0] - change.u[0]).abs() <= 1e-15 * slide);
+        assert!((at_rest.amplitudes[0] - (x - slide)).abs() <= 1e-15 * slide);
     }
 }
 
@@ -105,14 +105,14 @@ fn three_hundred_loose_blocks_go_back_and_stay() {
             .map(|i| if lambda[i] > 0.0 { gaps[i] } else { gaps[i].max(rows.row_dot(i, &u)) })
             .collect();
         let gaps_now = if travelled == 0.0 { gaps.clone() } else { open };
-        let (change, free) = blocks.solve(&rows, &gaps_now, &lambda, &u);
+        let (Rest { u: answer, .. }, free) = blocks.solve(&rows, &gaps_now, &lambda, &u);
         assert_eq!(free, 150 + 2 * 150);
-        let answer: Vec<f64> = u.iter().zip(&change.u).map(|(u, way)| u + way).collect();
         let met = |i: usize| rows.row_dot(i, &answer) <= gaps_now[i] + 1e-15 * (1.0 + travelled);
         assert!((0..rows.rows()).filter(|&i| lambda[i] == 0.0).all(met));
         assert!(blocks.length(&answer) <= blocks.length(&u));
         let (again, _) = blocks.solve(&rows, &gaps_now, &lambda, &answer);
-        assert!(norm_max(&again.u) <= 1e-14 * (1.0 + travelled), "{:e}", norm_max(&again.u));
+        let further = again.u.iter().zip(&answer).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        assert!(further <= 1e-14 * (1.0 + travelled), "{further:e}");
         answers.push(answer);
     }
     let far = answers[0].iter().zip(&answers[2]).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
@@ -137,7 +137,31 @@ fn grounded_unknowns_stay_to_the_last_bit() {
         compliance: &[0.0],
         lambda: &[0.0],
     };
-    let change = travel(&open, &[-5.0, -5.0, -2.0]).unwrap();
-    assert_eq!(change.u, [4.0, 4.0, 0.0]);
-    assert_eq!(change.amplitudes, [4.0]);
+    for start in [0.0, 1.0, 1e10] {
+        let at_rest = travel(&open, &[-5.0, -5.0, -2.0], vec![start]).unwrap();
+        assert_eq!(at_rest.u, [-1.0, -1.0, -2.0]);
+        assert_eq!(at_rest.amplitudes, [4.0]);
+    }
+}
+
+/// A soft spring to a stiff unknown: the pair moves together.
+#[test]
+fn a_grounded_unknown_that_hangs_on_another_moves_with_it() {
+    let null_space = Matrix { rows: 2, cols: 1, data: vec![1.0, 1.0] };
+    let bodies = [Moving { unknowns: 0..2, modes: 0..1, null_space: &null_space, rounding: 1e-14 }];
+    let open = OpenMotions {
+        bodies: &bodies,
+        amplitudes: &Matrix { rows: 1, cols: 1, data: vec![1.0] },
+        metric: &[1.0, 1e-3],
+        grounded: &[false, true],
+        rows: &Csr::empty(2),
+        gaps: &[],
+        compliance: &[],
+        lambda: &[],
+    };
+    let at_rest = travel(&open, &[-5.0, -1000.0], vec![2.0]).unwrap();
+    // a - 5 + 1e-3 (a - 1000) = 0
+    let a = 6.0 / 1.001;
+    assert!((at_rest.amplitudes[0] - a).abs() < 1e-13);
+    assert!((at_rest.u[0] - (a - 5.0)).abs() < 1e-13 && (at_rest.u[1] - (a - 1000.0)).abs() < 1e-11);
 }
