@@ -1,17 +1,13 @@
 //! The coarse space of a face: `W_F = G_F G_F'` over the rows F that are not held at their bound, r x r and sparse. Its
 //! pattern is analysed once for all faces, and the part that they share is factorised once.
 
-use std::sync::Arc;
-
 use crate::error::Result;
-use crate::linalg::semidefinite::clusters::Blocks;
-use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, WEAK};
-use crate::linalg::semidefinite::{is_regular_factor, GeneralInverse};
-use crate::linalg::vector::{axpy, norm, norm_max};
-use crate::linalg::{Cholesky, Csr, Matrix, Runs};
+use crate::linalg::vector::{axpy, norm};
+use crate::linalg::{Csr, Matrix, Runs};
 use crate::platform::memory::headroom;
 use crate::platform::{interrupt, tally};
-use crate::qp::between_solves::{BetweenSolves, Space};
+use crate::qp::between_solves::BetweenSolves;
+use crate::qp::space::{CoarseInverse, Space};
 use crate::qp::{Qp, Rung};
 
 pub struct Coarse<'a> {
@@ -33,24 +29,15 @@ pub struct Coarse<'a> {
 
 struct CoarseFace {
     held: Vec<bool>,
-    solver: Solver,
-}
-
-enum Solver {
-    Cholesky {
-        factor: Arc<Cholesky>,
-        /// Some motion is resisted weakly: see `WEAK`.
-        weak: bool,
-    },
-    /// Solution of minimum norm.
-    Singular(Box<dyn GeneralInverse>),
+    inverse: CoarseInverse,
 }
 
 impl<'a> Coarse<'a> {
     /// The space of a problem; the rows of G of stiff and soft bodies have similar size.
     pub fn of(qp: &Qp<'a>) -> Result<Self> {
         let kept = qp.kept.and_then(|kept| kept.take_space(qp.g_transposed, qp.bounded));
-        let space = kept.map_or_else(|| Space::new(qp.g_transposed, qp.bounded), Ok)?;
+        let space =
+            kept.map_or_else(|| Space::new(qp.g_transposed, qp.g_transposed, qp.bounded.to_vec()), Ok)?;
         let mut coarse = Self::on_space(space, qp.g_transposed, qp.blocks, qp.rounding);
         coarse.kept = qp.kept;
         Ok(coarse)
@@ -83,7 +70,7 @@ impl<'a> Coarse<'a> {
 
     /// The largest diagonal entry of `G G'`.
     pub fn largest(&self) -> f64 {
-        self.space.unit * self.space.unit * norm_max(&self.space.whole)
+        self.space.largest()
     }
 
     /// The space on the rows that are not held: factorises `W_F` if it is not the last face, unless the host or the time
@@ -95,61 +82,32 @@ impl<'a> Coarse<'a> {
             interrupt::check()?;
             tally::costly();
             self.faces[selected] = None;
-            self.faces[selected] = Some(CoarseFace { held: held.to_vec(), solver: self.solver(held)? });
+            self.faces[selected] = Some(CoarseFace { held: held.to_vec(), inverse: self.inverse(held)? });
             self.factorisations += 1;
         }
-        let solver = self.faces[selected].as_ref().map(|face| &face.solver);
-        Ok(OnFace { unit: self.space.unit, solver, solves: &mut self.solves })
+        let inverse = self.faces[selected].as_ref().map_or(&CoarseInverse::NOTHING, |face| &face.inverse);
+        Ok(OnFace { inverse, solves: &mut self.solves })
     }
 
     /// `G D G' + rho I`, D = diag(`weights`) >= 0; none if there are no modes or the weights resist some mode too little.
-    pub fn weighted(&mut self, weights: &[f64], rho: f64) -> Result<Option<Weighted>> {
+    pub fn weighted(&mut self, weights: &[f64], rho: f64) -> Result<Option<CoarseInverse>> {
         /// Added part of the diagonal entry in `G G'`, for motions that only rows with vanishing weights resist.
         const HELD: f64 = 1e-10;
-        let Space { factors: Some(factors), unit, whole, .. } = &self.space else { return Ok(None) };
-        interrupt::check()?;
-        tally::costly();
-        let mut w = factors.gram().weighted(self.g_transposed, |i| weights[i])?;
-        w.val.iter_mut().for_each(|v| *v /= unit * unit);
-        for (k, whole) in whole.iter().enumerate() {
-            let held = if *whole > 0.0 { HELD * whole } else { 1.0 };
-            w.val[w.ptr[k + 1] - 1] += rho / (unit * unit) + held;
-        }
-        self.factorisations += 1;
-        let factor = factors.analysis().attempt(&w, 1.0)?.ok();
-        Ok(factor.map(|factor| Weighted { factor, unit: *unit }))
+        self.factorisations += usize::from(self.dimension() > 0);
+        let rho = rho / (self.space.unit * self.space.unit);
+        let held = |whole: f64| rho + if whole > 0.0 { HELD * whole } else { 1.0 };
+        self.space.weighted(self.g_transposed, |i| weights[i], held)
     }
 
-    /// `W_F^-1`, or W_F+ if some motions are free or resisted weakly: by dense parts if these are small.
-    fn solver(&mut self, held: &[bool]) -> Result<Solver> {
-        let (g_transposed, rounding) = (self.g_transposed, self.rounding);
-        let Space { unit, whole, factors, bounded, by_blocks, .. } = &mut self.space;
-        let (unit, whole) = (*unit, &whole[..]);
-        if let Some(factors) = factors.as_mut().filter(|_| !self.left_free) {
-            let by = 1.0 / (unit * unit);
-            if let Ok(factor) = factors.factor(g_transposed, held, (by, 0.0), |_| ())? {
-                if is_regular_factor(&factor)? {
-                    let weak = factor.smallest_pivot() < WEAK;
-                    return Ok(Solver::Cholesky { factor, weak });
-                }
-            }
-            let mut w = factors.gram().sum(g_transposed, held)?;
-            w.val.iter_mut().for_each(|v| *v *= by);
-            let rows = FaceRows { g_transposed, held, unit, whole, rounding };
-            if Rung::SparseInverse.is_tried() {
-                if let Some(inverse) = PseudoInverse::new(&w, factors.analysis(), &rows)? {
-                    return Ok(Solver::Singular(Box::new(inverse)));
-                }
+    fn inverse(&mut self, held: &[bool]) -> Result<CoarseInverse> {
+        if !self.left_free {
+            if let Some(inverse) = self.space.inverse(self.g_transposed, held, self.rounding)? {
+                return Ok(inverse);
             }
         }
-        let mut known = match by_blocks.take() {
-            Some(known) => known,
-            None => Blocks::new(g_transposed, self.blocks, bounded, (unit, whole, rounding))?,
-        };
-        let inverse = known.inverse(held)?;
+        let inverse = self.space.inverse_by_blocks(self.g_transposed, self.blocks, held, self.rounding)?;
         self.left_free = inverse.deficiency() > 0;
-        *by_blocks = Some(known);
-        Ok(Solver::Singular(Box::new(inverse)))
+        Ok(inverse)
     }
 
     /// `argmin |v_F - G_F'alpha|`, alpha of minimum norm.
@@ -217,44 +175,25 @@ impl Drop for Coarse<'_> {
     }
 }
 
-/// `G D G' + rho I` over all rows.
-pub struct Weighted {
-    factor: Cholesky,
-    unit: f64,
-}
-
-impl Weighted {
-    pub fn solve(&self, rhs: &[f64]) -> Result<Vec<f64>> {
-        interrupt::check()?;
-        tally::costly();
-        let mut x: Vec<f64> = rhs.iter().map(|x| x / self.unit).collect();
-        self.factor.solve(&mut x)?;
-        x.iter_mut().for_each(|x| *x /= self.unit);
-        Ok(x)
-    }
-}
-
 /// The coarse space on one face.
 pub struct OnFace<'c> {
-    unit: f64,
-    /// None without modes.
-    solver: Option<&'c Solver>,
+    inverse: &'c CoarseInverse,
     solves: &'c mut usize,
 }
 
+impl std::ops::Deref for OnFace<'_> {
+    type Target = CoarseInverse;
+
+    fn deref(&self) -> &CoarseInverse {
+        self.inverse
+    }
+}
+
 impl OnFace<'_> {
-    /// `W_F+ rhs`
+    /// `W_F+ rhs`, counted.
     pub fn solve(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
         *self.solves += 1;
-        let Some(solver) = self.solver else { return Ok(vec![0.0; rhs.len()]) };
-        interrupt::check()?;
-        tally::costly();
-        let mut x = self.in_units(rhs);
-        match solver {
-            Solver::Cholesky { factor, .. } => factor.solve(&mut x)?,
-            Solver::Singular(solver) => x = solver.solve(&x)?,
-        }
-        Ok(self.in_units(&x))
+        self.inverse.solve(rhs)
     }
 
     /// `W_F^-1 rhs`, or `(W_F + 1e-8 N N')^-1 rhs` if W_F has the kernel N.
@@ -265,46 +204,6 @@ impl OnFace<'_> {
             solver.add_kernel_part(1.0 / (WEIGHT * self.unit * self.unit), rhs, &mut x);
         }
         Ok(x)
-    }
-
-    /// `x += N N'b`, N the kernel of `W_F`: the part of b along free motions.
-    pub fn add_free_part(&self, b: &[f64], x: &mut [f64]) {
-        if let Some(solver) = self.singular() {
-            solver.add_kernel_part(1.0, b, x);
-        }
-    }
-
-    /// Dimension of the kernel of `W_F`.
-    pub fn deficiency(&self) -> usize {
-        self.singular().map_or(0, GeneralInverse::deficiency)
-    }
-
-    /// T with `T'W_F T = I` for all motions that the face resists, r x rank; none if it resists all motions well.
-    pub fn basis(&self) -> Option<Matrix> {
-        let mut basis = self.singular()?.basis();
-        basis.data.iter_mut().for_each(|v| *v /= self.unit);
-        Some(basis)
-    }
-
-    /// Some motions are resisted so weakly that rounding of `G_F v` matters in `W_F+ G_F v`.
-    fn is_weak(&self) -> bool {
-        match self.solver {
-            Some(Solver::Cholesky { weak, .. }) => *weak,
-            Some(Solver::Singular(solver)) => solver.is_weak(),
-            None => false,
-        }
-    }
-
-    fn singular(&self) -> Option<&dyn GeneralInverse> {
-        match self.solver {
-            Some(Solver::Singular(solver)) => Some(&**solver),
-            _ => None,
-        }
-    }
-
-    /// x / s
-    fn in_units(&self, x: &[f64]) -> Vec<f64> {
-        x.iter().map(|x| x / self.unit).collect()
     }
 }
 
@@ -318,7 +217,7 @@ impl<'a> AnswerFace<'a> {
     /// `rounding`: accuracy of the rows of G.
     pub fn new(g_transposed: &'a Csr, blocks: &'a [usize], held: &'a [bool], rounding: f64) -> Result<Self> {
         // there will be no other face
-        let space = Space::new(g_transposed, &vec![true; held.len()])?;
+        let space = Space::new(g_transposed, g_transposed, vec![true; held.len()])?;
         Ok(Self { coarse: Coarse::on_space(space, g_transposed, blocks, rounding), held })
     }
 

@@ -11,7 +11,8 @@ use crate::error::Result;
 use crate::linalg::vector::{axpy, norm};
 use crate::linalg::Csr;
 use crate::platform::interrupt;
-use crate::qp::coarse::{Coarse, Weighted};
+use crate::qp::coarse::Coarse;
+use crate::qp::space::CoarseInverse;
 use crate::qp::Qp;
 
 const STEPS: usize = 40;
@@ -252,7 +253,7 @@ impl Stiffness for Damped<'_, '_> {
     }
 }
 
-impl Inverse for Weighted {
+impl Inverse for CoarseInverse {
     fn solve(&self, load: &[f64]) -> Result<Vec<f64>> {
         Self::solve(self, load)
     }

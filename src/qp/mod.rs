@@ -20,6 +20,7 @@ mod projection;
 mod proportioning;
 mod restricted;
 mod rungs;
+mod space;
 
 pub use acceptance::{AcceptanceTest, Limits, Mended, Observer, Solution, StepKind, StepReport, Verdict};
 pub use between_solves::BetweenSolves;

@@ -7,7 +7,7 @@ use feti_contact::qp::friction::{
     friction, Cones, FrictionLimits, FrictionObserver, FrictionProblem, FrictionReport, FrictionSolution,
     FrictionStart, Node,
 };
-use feti_contact::qp::{AcceptanceTest, Direct};
+use feti_contact::qp::{AcceptanceTest, Direct, Qp};
 
 use crate::dense::{Dense, OfMatrices};
 
@@ -71,13 +71,19 @@ impl Given {
     }
 
     pub fn problem(&self) -> FrictionProblem<'_> {
-        FrictionProblem {
+        let qp = Qp {
             a: &self.f,
             b: &self.d,
             g_transposed: &self.g_transposed,
             blocks: &[],
             rounding: 1e-14,
             e: &self.e,
+            bounded: &[],
+            preconditioner: None,
+            kept: None,
+        };
+        FrictionProblem {
+            qp,
             cones: &self.cones,
             preconditioner: self.preconditioner.as_ref().map(|m| m as _),
         }

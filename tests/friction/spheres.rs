@@ -7,7 +7,7 @@ use feti_contact::qp::friction::{
     friction, known_face, Cones, Coordinate, Face, FacePreconditioner, FrictionLimits, FrictionProblem,
     FrictionStart, Law, Node, OnFace,
 };
-use feti_contact::qp::Verdict;
+use feti_contact::qp::{Qp, Verdict};
 
 use crate::problem::Content;
 
@@ -150,16 +150,18 @@ fn found(n: usize, push: f64) -> Found {
     let e = [unit * pressed, unit * pushed * ALONG[0], unit * pushed * ALONG[1]];
     let node = |i: usize| Node::new(Some(3 * i), &[3 * i + 1, 3 * i + 2], MU, 0.0).unwrap();
     let cones = Cones::new(m, (0..n * n).map(node).collect()).unwrap();
-    let problem = FrictionProblem {
+    let qp = Qp {
         a: &spheres.influence,
         b: &d,
         g_transposed: &g_transposed,
         blocks: &[],
         rounding: 1e-14,
         e: &e,
-        cones: &cones,
-        preconditioner: Some(&spheres.inverse),
+        bounded: &[],
+        preconditioner: None,
+        kept: None,
     };
+    let problem = FrictionProblem { qp, cones: &cones, preconditioner: Some(&spheres.inverse) };
     let limits = FrictionLimits { tolerance: 1e-9, products: 1000, direct: None };
     let found = friction(problem, limits, FrictionStart::default(), &mut Content, &mut Content).unwrap();
     assert_eq!(found.verdict, Verdict::Solved, "{} {:?}", found.merit, found.tried);

@@ -2,11 +2,16 @@
 
 use super::*;
 use crate::linalg::random::scattered;
-use crate::linalg::vector::{dot, norm};
+use crate::linalg::vector::{dot, norm, norm_max};
 
 /// The coarse space with single columns as blocks.
 fn coarse<'a>(g_transposed: &'a Csr, bounded: &[bool], rounding: f64) -> Coarse<'a> {
-    Coarse::on_space(Space::new(g_transposed, bounded).unwrap(), g_transposed, &[], rounding)
+    Coarse::on_space(
+        Space::new(g_transposed, g_transposed, bounded.to_vec()).unwrap(),
+        g_transposed,
+        &[],
+        rounding,
+    )
 }
 
 fn undetermined(g_transposed: &Csr, held: &[bool], rounding: f64) -> Result<Matrix> {

@@ -106,9 +106,7 @@ impl Run<'_, '_> {
         for _ in 0..=turns {
             self.counts.direct += 1;
             let (step, turn) = dense.solved(&self.problem, &face, &now)?;
-            let (mut x, mut g, mut alpha) = (now.x, now.g, now.alpha);
-            axpy(1.0, &step.dx, &mut x);
-            axpy(1.0, &step.dg, &mut g);
+            let ((x, g), mut alpha) = (step.from(&now.x, &now.g, 1.0), now.alpha);
             axpy(1.0, &turn, &mut alpha);
             now = self.point(x, g, alpha)?;
             if self.is_met(&now) {

@@ -24,7 +24,7 @@ pub struct Dense {
 impl Dense {
     /// None if there are too many rows and modes.
     pub fn new(problem: &FrictionProblem, direct: Direct) -> Result<Option<Self>> {
-        let (m, r) = (problem.b.len(), problem.e.len());
+        let (m, r) = (problem.qp.b.len(), problem.qp.e.len());
         if m + r > direct.limit {
             return Ok(None);
         }
@@ -53,8 +53,8 @@ impl Dense {
 
     /// dx with its image, and da, from a point of the method.
     pub fn solved(&self, problem: &FrictionProblem, face: &Face, now: &Point) -> Result<(Step, Vec<f64>)> {
-        let mut left = problem.e.to_vec();
-        problem.g_transposed.mul_transposed_add(-1.0, &now.x, &mut left);
+        let mut left = problem.qp.e.to_vec();
+        problem.qp.g_transposed.mul_transposed_add(-1.0, &now.x, &mut left);
         let residual = face.residual(&now.x, &now.r);
         let (dx, turn) = self.newton(problem, face, &residual, (&left, &[]))?;
         let mut dg = vec![0.0; dx.len()];
@@ -81,14 +81,14 @@ impl Dense {
             unit[j] = 1.0;
             let image = face.image(&unit, self.f.col(j));
             image.iter().enumerate().for_each(|(k, v)| column[k] = weight(k) * v);
-            problem.g_transposed.row(j).for_each(|(mode, v)| column[m + mode] = v);
+            problem.qp.g_transposed.row(j).for_each(|(mode, v)| column[m + mode] = v);
         }
         for (k, coordinate) in face.coordinates.iter().enumerate() {
             if !matches!(coordinate.law, Law::Free { .. }) {
                 continue;
             }
             for (&row, along) in coordinate.rows.iter().zip(coordinate.along).filter(|(_, v)| *v != 0.0) {
-                for (mode, v) in problem.g_transposed.row(row) {
+                for (mode, v) in problem.qp.g_transposed.row(row) {
                     let entry = matrix.get(k, m + mode) - weights[k] * along * v;
                     matrix.set(k, m + mode, entry);
                 }

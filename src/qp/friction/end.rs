@@ -1,10 +1,10 @@
 //! The method from start to verdict, and the linear problem with which it is compared.
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, norm, ratio};
+use crate::linalg::vector::{norm, ratio};
 use crate::qp::friction::cones::Cones;
 use crate::qp::friction::face::Face;
-use crate::qp::friction::nearest::{project, Projected};
+use crate::qp::friction::nearest::Projected;
 use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::{
     FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
@@ -27,12 +27,12 @@ pub fn friction(
     judge: &mut dyn AcceptanceTest,
     observer: &mut dyn FrictionObserver,
 ) -> Result<FrictionSolution> {
-    let alpha = start.alpha.map_or_else(|| vec![0.0; problem.e.len()], <[f64]>::to_vec);
+    let alpha = start.alpha.map_or_else(|| vec![0.0; problem.qp.e.len()], <[f64]>::to_vec);
     let (mut run, first) = Run::new(problem, limits, start, observer)?;
     run.last =
         Point { x: first.point.clone(), alpha: alpha.clone(), merit: f64::INFINITY, ..Point::default() };
     if !first.met {
-        let margin = ratio(norm(&first.left), norm(problem.e));
+        let margin = ratio(norm(&first.left), norm(problem.qp.e));
         return Ok(run.solution(Verdict::Infeasible { direction: first.left, margin }));
     }
     let verdict = match run.solve(limits, (first, alpha), judge) {
@@ -58,7 +58,7 @@ pub fn known_face(
     let (x, mut g) = (first.point, run.gradient(&vec![0.0; r.len()])?);
     run.measure(&g, limits.tolerance)?;
     g = run.gradient(&x)?;
-    let alpha = run.turned(&model, &x, &g, &vec![0.0; problem.e.len()])?;
+    let alpha = run.turned(&model, &x, &g, &vec![0.0; problem.qp.e.len()])?;
     let start = run.point(x, g, alpha)?;
     let preconditioner = problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
     let size = norm(&model.reduced(model.face.residual(&start.x, &start.r))?);
@@ -70,9 +70,7 @@ pub fn known_face(
         }
         let step = run.pairs.minimise(&model, model.face.residual(&start.x, &start.r))?;
         rest = step.rest;
-        there = (start.x.clone(), start.r.clone());
-        axpy(1.0, &step.dx, &mut there.0);
-        axpy(1.0, &step.dg, &mut there.1);
+        there = step.from(&start.x, &start.r, 1.0);
     }
     Ok(run.counts.products + 1)
 }
@@ -167,7 +165,7 @@ impl<'a> Run<'a, '_> {
             let trial = now.x[row] - RHO * now.r[row];
             y[row] = if trial <= 0.0 { trial.min(y[row]) } else { y[row] };
         }
-        let inside = project(&self.problem, self.problem.cones, self.motions.as_ref(), &y)?;
+        let inside = self.projected(&y)?;
         let x = if inside.met { inside.point } else { now.x.clone() };
         let g = self.gradient(&x)?;
         let model = self.model(Face::at(self.problem.cones, &x, &self.gaps(&g, &now.alpha), RHO))?;

@@ -4,7 +4,7 @@
 use crate::error::Result;
 use crate::qp::friction::cones::{direction, length, Cones, Node};
 use crate::qp::friction::coordinates::{Coordinate, Law};
-use crate::qp::friction::motions::{Inverse, Motions};
+use crate::qp::friction::motions::{Motions, Turned};
 
 /// A bound is zero if it is below this part of the largest force.
 const NOTHING: f64 = 1e-14;
@@ -146,35 +146,29 @@ const EQUATION: Law = Law::Free { damping: 0.0, shift: 0.0 };
 pub struct Model {
     pub face: Face,
     weights: Vec<f64>,
-    /// `(A w^2 A')^+` for A = G W and for A = G Z; none without modes.
-    coarse: Option<(Inverse, Inverse)>,
+    /// `(A w^2 A')^+` for A = G W and for A = G Z.
+    plain: Turned,
+    through: Turned,
 }
 
 impl Model {
-    pub fn new(face: Face, motions: Option<&Motions>) -> Result<Self> {
+    pub fn new(face: Face, motions: &mut Motions) -> Result<Self> {
         let weights = face.weights();
-        let coarse = match motions {
-            Some(motions) => Some((
-                motions.on(&face.coordinates, weights.clone(), false)?,
-                motions.on(&face.coordinates, weights.clone(), true)?,
-            )),
-            None => None,
-        };
-        Ok(Self { face, weights, coarse })
+        let plain = motions.on(&face.coordinates, weights.clone(), false)?;
+        let through = motions.on(&face.coordinates, weights.clone(), true)?;
+        Ok(Self { face, weights, plain, through })
     }
 
     /// `da = (A w^2 A')^+ A w^2 q` of a residual, r entries.
     pub fn turn(&self, residual: &[f64]) -> Result<Vec<f64>> {
-        let Some((plain, _)) = &self.coarse else { return Ok(Vec::new()) };
-        plain.solve(&plain.weighted_image(residual))
+        self.plain.solve(&self.plain.weighted_image(residual))
     }
 
     /// Subtracts `A'da` from the free coordinates of a residual.
     pub fn turned(&self, residual: &mut [f64]) -> Result<()> {
-        let Some((plain, _)) = &self.coarse else { return Ok(()) };
         let turn = self.turn(residual)?;
         for (k, q) in residual.iter_mut().enumerate().filter(|(k, _)| self.weights[*k] != 0.0) {
-            *q -= plain.row_dot(k, &turn);
+            *q -= self.plain.row_dot(k, &turn);
         }
         Ok(())
     }
@@ -190,11 +184,10 @@ impl Model {
 
     /// `y <- y - w^2 A_Z'(A_Z w^2 A_Z')^+ (A_Z y + more)`
     pub fn balance(&self, y: &mut [f64], more: Option<&[f64]>) -> Result<()> {
-        let Some((_, through)) = &self.coarse else { return Ok(()) };
-        let mut image = through.image(y);
+        let mut image = self.through.image(y);
         more.into_iter().flatten().zip(&mut image).for_each(|(more, image)| *image += more);
-        let beta = through.solve(&image)?;
-        through.add_weighted(-1.0, &beta, y);
+        let beta = self.through.solve(&image)?;
+        self.through.add_weighted(-1.0, &beta, y);
         Ok(())
     }
 }

@@ -37,22 +37,13 @@ pub use supports::Supported;
 pub use unheld::unheld;
 
 use crate::error::Result;
-use crate::linalg::{Csr, Operator};
-use crate::qp::{Counts, Direct, Verdict};
+use crate::qp::{Counts, Direct, Qp, Verdict};
 
-/// The problem in scaled quantities; `G` is given as `G'`, m x r, as in `Qp`.
+/// The problem in scaled quantities.
 #[derive(Clone, Copy)]
 pub struct FrictionProblem<'a> {
-    /// F, including the compliance of all rows.
-    pub a: &'a dyn Operator,
-    /// d
-    pub b: &'a [f64],
-    pub g_transposed: &'a Csr,
-    /// First columns of the blocks of G, ascending. Empty: each column is a block.
-    pub blocks: &'a [usize],
-    /// A motion a is free if `|G a| <= rounding |G| |a|`.
-    pub rounding: f64,
-    pub e: &'a [f64],
+    /// F, including the compliance of all rows, d, G' and e; `cones` replaces its bounds, and `preconditioner` its own.
+    pub qp: Qp<'a>,
     pub cones: &'a Cones,
     pub preconditioner: Option<&'a dyn FacePreconditioner>,
 }

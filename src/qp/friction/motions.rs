@@ -1,145 +1,95 @@
-//! The coarse space on a face with friction: `A w^2 A'`, r x r and sparse, A = G W or G Z over the coordinates of the face. All faces
-//! share its pattern, which is analysed once.
-
-use std::sync::Arc;
+//! The coarse space on a face with friction: `A w^2 A'`, r x r and sparse, A = G W or G Z over the coordinates of the face.
 
 use crate::error::Result;
-use crate::linalg::semidefinite::clusters::Blocks;
-use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse};
-use crate::linalg::semidefinite::{is_regular_factor, GeneralInverse};
-use crate::linalg::sparse::gram::Gram;
-use crate::linalg::vector::{norm_max, power_of_two_below};
-use crate::linalg::{Analysis, Cholesky, Csr, Symmetric};
+use crate::linalg::vector::norm_max;
+use crate::linalg::Csr;
 use crate::platform::memory::{headroom_with, SMALL_MATRICES};
 use crate::platform::{interrupt, tally};
+use crate::qp::friction::cones::Cones;
 use crate::qp::friction::coordinates::{self, Coordinate};
-use crate::qp::friction::FrictionProblem;
+use crate::qp::space::{CoarseInverse, Space};
+use crate::qp::Qp;
 
 /// Motions that weighted rows resist by less than this part of |G| are free: for `A w^2 A'` the limit is its square,
 /// 1e-11.
 const CUT: f64 = 3e-6;
 
-/// Data common to all faces of one G; none without modes.
+/// Data common to all faces of one G.
 pub struct Motions<'a> {
     g_transposed: &'a Csr,
     blocks: &'a [usize],
     rounding: f64,
-    /// Pattern of A' of the last face, m x r.
+    /// Pattern of A' of all faces, m x r.
     pattern: Csr,
-    gram: Gram,
-    analysis: Arc<Analysis>,
-    /// The power of two s for which W is divided by s^2, and the diagonal of `G G' / s^2`.
-    unit: f64,
-    whole: Vec<f64>,
+    space: Space,
     nothing_held: Vec<bool>,
 }
 
 /// Rows of A' with their weights, and `(A w^2 A')^+`.
-pub struct Inverse {
+pub struct Turned {
     /// m x r
     rows: Csr,
     weights: Vec<f64>,
-    unit: f64,
-    solver: Solver,
-}
-
-enum Solver {
-    Cholesky(Cholesky),
-    Singular(Box<dyn GeneralInverse>),
+    inverse: CoarseInverse,
 }
 
 impl<'a> Motions<'a> {
-    pub fn of(problem: &FrictionProblem<'a>) -> Result<Option<Self>> {
-        let g_transposed = problem.g_transposed;
-        if g_transposed.cols == 0 {
-            return Ok(None);
-        }
+    pub fn of(qp: &Qp<'a>, cones: &Cones) -> Result<Self> {
         interrupt::check()?;
         tally::costly();
-        let pattern = coordinates::pattern(problem.cones, g_transposed);
-        let gram = Gram::of(&pattern)?;
-        let analysis = Arc::new(Analysis::new(gram.pattern(), &vec![false; g_transposed.cols])?);
-        let mut whole = vec![0.0; g_transposed.cols];
-        g_transposed.col.iter().zip(&g_transposed.val).for_each(|(&k, v)| whole[k] += v * v);
-        let unit = power_of_two_below(norm_max(&whole).sqrt());
-        whole.iter_mut().for_each(|v| *v /= unit * unit);
+        let &Qp { g_transposed, blocks, rounding, .. } = qp;
+        let pattern = coordinates::pattern(cones, g_transposed);
+        let space = Space::new(g_transposed, &pattern, vec![true; pattern.rows()])?;
         let nothing_held = vec![false; pattern.rows()];
-        let (blocks, rounding) = (problem.blocks, problem.rounding);
-        Ok(Some(Self { g_transposed, blocks, rounding, pattern, gram, analysis, unit, whole, nothing_held }))
+        Ok(Self { g_transposed, blocks, rounding, pattern, space, nothing_held })
     }
 
     /// `(G G')^+` over all rows, for any coordinates.
-    pub fn of_all_rows(&self, coordinates: &[Coordinate]) -> Result<Inverse> {
+    pub fn of_all_rows(&mut self, coordinates: &[Coordinate]) -> Result<Turned> {
         self.inverse(self.in_coordinates(coordinates, false), vec![1.0; coordinates.len()], self.rounding)
     }
 
     /// For A = G W, or, if `through`, for A = G Z, in which normal coordinates also move those along the slip that follow
     /// them.
-    pub fn on(&self, coordinates: &[Coordinate], weights: Vec<f64>, through: bool) -> Result<Inverse> {
+    pub fn on(&mut self, coordinates: &[Coordinate], weights: Vec<f64>, through: bool) -> Result<Turned> {
         self.inverse(self.in_coordinates(coordinates, through), weights, CUT.max(self.rounding))
     }
 
-    /// Factor of `A w^2 A' + shift max diag(G G') I`; none if it is not positive definite.
+    /// `A w^2 A' + shift max diag(G G') I` for A = G Z; none without modes, or if it is not positive definite.
     pub fn shifted(
         &self,
         coordinates: &[Coordinate],
         weights: Vec<f64>,
         shift: f64,
-    ) -> Result<Option<Inverse>> {
-        interrupt::check()?;
-        tally::costly();
+    ) -> Result<Option<Turned>> {
         let rows = self.in_coordinates(coordinates, true);
-        let mut w = self.gram.weighted(&rows, |i| weights[i] * weights[i])?;
-        self.in_units(&mut w);
-        let shift = shift * norm_max(&self.whole);
-        (0..w.order()).for_each(|k| w.val[w.ptr[k + 1] - 1] += shift);
-        let factor = self.analysis.attempt(&w, 1.0)?.ok();
-        let unit = self.unit;
-        Ok(factor.map(|factor| Inverse { rows, weights, unit, solver: Solver::Cholesky(factor) }))
+        let shift = shift * norm_max(&self.space.whole);
+        let inverse = self.space.weighted(&rows, |i| weights[i] * weights[i], |_| shift)?;
+        Ok(inverse.map(|inverse| Turned { rows, weights, inverse }))
     }
 
     /// The largest diagonal entry of `G G'`.
     pub fn size(&self) -> f64 {
-        norm_max(&self.whole) * self.unit * self.unit
+        self.space.largest()
     }
 
-    /// Bytes of the rows of a face, with and without weights.
-    fn bytes(&self) -> usize {
-        2 * (self.pattern.val.len() * (size_of::<f64>() + size_of::<usize>())
-            + self.pattern.ptr.len() * size_of::<usize>())
-    }
-
-    fn in_units(&self, w: &mut Symmetric) {
-        w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
-    }
-
-    fn inverse(&self, rows: Csr, weights: Vec<f64>, rounding: f64) -> Result<Inverse> {
+    fn inverse(&mut self, rows: Csr, weights: Vec<f64>, rounding: f64) -> Result<Turned> {
         interrupt::check()?;
         tally::costly();
-        let _room = headroom_with(self.bytes(), SMALL_MATRICES, "the coarse space of a face")?;
+        let entries = rows.val.len() * (size_of::<f64>() + size_of::<usize>());
+        let both = 2 * (entries + rows.ptr.len() * size_of::<usize>());
+        let _room = headroom_with(both, SMALL_MATRICES, "the coarse space of a face")?;
         let mut weighted = rows.clone();
         for (i, weight) in weights.iter().enumerate() {
             weighted.val[rows.ptr[i]..rows.ptr[i + 1]].iter_mut().for_each(|v| *v *= weight);
         }
-        let mut w = self.gram.sum(&weighted, &self.nothing_held)?;
-        self.in_units(&mut w);
-        let solver = self.solver(&w, &weighted, rounding)?;
-        Ok(Inverse { rows, weights, unit: self.unit, solver })
-    }
-
-    fn solver(&self, w: &Symmetric, weighted: &Csr, rounding: f64) -> Result<Solver> {
-        if let Ok(factor) = self.analysis.attempt(w, 1.0)? {
-            if is_regular_factor(&factor)? {
-                return Ok(Solver::Cholesky(factor));
-            }
-        }
-        let (held, unit, whole) = (&self.nothing_held[..], self.unit, &self.whole[..]);
-        let rows = FaceRows { g_transposed: weighted, held, unit, whole, rounding };
-        if let Some(inverse) = PseudoInverse::new(w, &self.analysis, &rows)? {
-            return Ok(Solver::Singular(Box::new(inverse)));
-        }
-        let mut blocks = Blocks::new(weighted, self.blocks, held, (unit, whole, rounding))?;
-        Ok(Solver::Singular(Box::new(blocks.inverse(held)?)))
+        let inverse = match self.space.inverse(&weighted, &self.nothing_held, rounding)? {
+            Some(inverse) => inverse,
+            None => self.space.inverse_by_blocks(&weighted, self.blocks, &self.nothing_held, rounding)?,
+        };
+        // the blocks are those of these rows
+        self.space.by_blocks = None;
+        Ok(Turned { rows, weights, inverse })
     }
 
     /// `W'G'` or `Z'G'`, m x r.
@@ -167,18 +117,10 @@ impl<'a> Motions<'a> {
     }
 }
 
-impl Inverse {
+impl Turned {
     /// `(A w^2 A')^+ b`
     pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>> {
-        interrupt::check()?;
-        tally::costly();
-        let mut x: Vec<f64> = b.iter().map(|b| b / self.unit).collect();
-        match &self.solver {
-            Solver::Cholesky(factor) => factor.solve(&mut x)?,
-            Solver::Singular(solver) => x = solver.solve(&x)?,
-        }
-        x.iter_mut().for_each(|x| *x /= self.unit);
-        Ok(x)
+        self.inverse.solve(b)
     }
 
     /// `A y`
@@ -190,6 +132,12 @@ impl Inverse {
     pub fn weighted_image(&self, y: &[f64]) -> Vec<f64> {
         let weighted: Vec<f64> = y.iter().zip(&self.weights).map(|(y, w)| w * w * y).collect();
         self.rows.mul_transposed(&weighted)
+    }
+
+    /// `A w^2 A' beta`
+    pub fn resistance(&self, beta: &[f64]) -> Vec<f64> {
+        let images: Vec<f64> = (0..self.rows.rows()).map(|i| self.rows.row_dot(i, beta)).collect();
+        self.weighted_image(&images)
     }
 
     /// `y += by w^2 A' beta`

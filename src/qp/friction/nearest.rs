@@ -1,7 +1,7 @@
-//! PROJ_C, the nearest point of the cones with `G x = e`: Newton's method for beta in
+//! The nearest point of the cones with `G x = e`, PROJ_C(y), and with `G x + delta beta = e`, by Newton's method for beta in
 //!
 //! ```text
-//! G PI(y + G'beta) = e,   the gradient of   phi(beta) = v'l - l'l/2 - e'beta,   v = y + G'beta,   l = PI(v)
+//! G PI(y + G'beta) + delta beta = e,   the gradient of   phi(beta) = v'l - l'l/2 + delta |beta|^2/2 - e'beta,   v = y + G'beta,   l = PI(v)
 //! ```
 
 use crate::error::Result;
@@ -11,154 +11,129 @@ use crate::qp::friction::cones::{Cones, Place};
 use crate::qp::friction::coordinates::{Coordinate, Law};
 use crate::qp::friction::face::Face;
 use crate::qp::friction::motions::Motions;
-use crate::qp::friction::FrictionProblem;
+use crate::qp::Qp;
 
-/// Limit of `|e - G l|` relative to `|e| + |G||y|`, and the limit that is accepted if the method ends earlier.
+/// Limit of the residual relative to `|e| + |G||y|`, and the limit that is accepted if the method ends earlier.
 const ACCURACY: f64 = 1e-12;
 const ACCEPTED: f64 = 1e-8;
 const STEPS: usize = 100;
-/// Shift relative to the largest diagonal entry of `G G'`, since the part of the matrix left by the cones may be
+/// Shift relative to the largest diagonal entry of `G G'`, since without delta the part of the matrix left by the cones may be
 /// singular: the first value, reduced after every full step and increased after short ones.
 const SHIFT: f64 = 1e-6;
 const LESS: f64 = 0.1;
 const MORE: f64 = 10.0;
 const SHORT: f64 = 0.1;
 const SHIFTS: (f64, f64) = (1e-14, 1e-2);
-/// The shift of the last steps.
+/// The shift of the last steps, which remove the rounding in `e - G l` that weakly resisted motions would amplify.
 const ROUNDING: f64 = 1e-13;
-const POLISHES: usize = 2;
 /// Armijo's factor on the slope, and the shortest step.
 const SLOPE: f64 = 1e-4;
 const SHORTEST: f64 = 1e-10;
 /// Bound of the multipliers relative to the data: beyond it phi decreases without end.
 const ENDLESS: f64 = 1e14;
 
+/// What is projected. Without delta the multiplier has no bound if no point satisfies `G x = e`.
+pub struct Target<'a> {
+    pub qp: &'a Qp<'a>,
+    pub cones: &'a Cones,
+    pub motions: &'a Motions<'a>,
+    pub y: &'a [f64],
+    pub delta: f64,
+}
+
+#[derive(Clone)]
 pub struct Projected {
+    pub beta: Vec<f64>,
     pub point: Vec<f64>,
-    /// `e - G point`
+    places: Vec<Place>,
+    /// `e - G point - delta beta`
     pub left: Vec<f64>,
-    /// `G x = e` is satisfied.
+    phi: f64,
+    /// `left` is small enough.
     pub met: bool,
 }
 
-struct Trial {
-    beta: Vec<f64>,
-    point: Vec<f64>,
-    places: Vec<Place>,
-    left: Vec<f64>,
-    phi: f64,
-}
-
-pub fn project(
-    problem: &FrictionProblem,
-    cones: &Cones,
-    motions: Option<&Motions>,
-    y: &[f64],
-) -> Result<Projected> {
-    let problem = &FrictionProblem { cones, ..*problem };
-    let first = trial(problem, y, vec![0.0; problem.e.len()]);
-    let Some(motions) = motions else { return Ok(first.done(true)) };
-    let mut terms = vec![0.0; problem.e.len()];
-    problem.g_transposed.mul_transposed_abs_add(y, &mut terms);
-    let scale = norm(problem.e) + norm(&terms);
-    if !scale.is_finite() {
-        return Ok(first.done(false));
-    }
-    let (end, nearest) = descended(problem, motions, y, first, scale)?;
-    let error = norm(&end.left);
-    if error <= ACCURACY * scale {
-        return Ok(polished(problem, motions, y, end)?.done(true));
-    }
-    Ok(if error <= ACCEPTED * scale { end.done(true) } else { nearest })
-}
-
-/// The end point of Newton's method, and the point closest to `G x = e`: if no point satisfies it, phi decreases without
-/// end.
-fn descended(
-    problem: &FrictionProblem,
-    motions: &Motions,
-    y: &[f64],
-    first: Trial,
-    scale: f64,
-) -> Result<(Trial, Projected)> {
-    let (mut now, mut shift) = (first, SHIFT);
-    let mut nearest = Projected { point: now.point.clone(), left: now.left.clone(), met: false };
-    for step in 0..STEPS {
-        interrupt::reached("Newton steps of a projection on cones", step)?;
-        let endless = norm(&now.beta) > ENDLESS * (norm(y) + norm(problem.e));
-        if norm(&now.left) <= ACCURACY * scale || endless || !now.phi.is_finite() {
-            break;
+impl Target<'_> {
+    /// The end point of Newton's method from beta; if it does not satisfy the equations, the point closest to that.
+    pub fn projected(&self, beta: Vec<f64>) -> Result<Projected> {
+        let mut terms = vec![0.0; self.qp.e.len()];
+        self.qp.g_transposed.mul_transposed_abs_add(self.y, &mut terms);
+        let scale = norm(self.qp.e) + norm(&terms);
+        let (mut now, mut shift) = (self.at(beta), SHIFT);
+        let mut closest = now.clone();
+        for step in 0..STEPS {
+            interrupt::reached("Newton steps of a projection on cones", step)?;
+            let (error, size) = (norm(&now.left), norm(self.y) + norm(self.qp.e));
+            let endless = self.delta == 0.0 && norm(&now.beta) > ENDLESS * size;
+            if error == 0.0 || endless || !now.phi.is_finite() {
+                break;
+            }
+            let is_last = error <= ACCURACY * scale;
+            let Some(direction) = self.direction(&now, if is_last { ROUNDING } else { shift })? else {
+                break;
+            };
+            let Some((next, t)) = self.step(&now, &direction, is_last) else { break };
+            let by = match t {
+                1.0 => LESS,
+                t if t < SHORT => MORE,
+                _ => 1.0,
+            };
+            shift = (by * shift).clamp(SHIFTS.0, SHIFTS.1);
+            now = next;
+            if norm(&now.left) < norm(&closest.left) {
+                closest.clone_from(&now);
+            }
         }
-        let Some(direction) = direction(problem, motions, &now, shift)? else { break };
-        let Some((next, t)) = armijo(problem, y, &now, &direction) else { break };
-        let by = match t {
-            1.0 => LESS,
-            t if t < SHORT => MORE,
-            _ => 1.0,
-        };
-        shift = (by * shift).clamp(SHIFTS.0, SHIFTS.1);
-        now = next;
-        if norm(&now.left) < norm(&nearest.left) {
-            (nearest.point, nearest.left) = (now.point.clone(), now.left.clone());
-        }
+        let met = scale.is_finite() && norm(&now.left) <= ACCEPTED * scale;
+        Ok(Projected { met, ..if met { now } else { closest } })
     }
-    Ok((now, nearest))
-}
 
-fn direction(
-    problem: &FrictionProblem,
-    motions: &Motions,
-    now: &Trial,
-    shift: f64,
-) -> Result<Option<Vec<f64>>> {
-    let (coordinates, weights) = derivative(problem.cones, &now.places);
-    let matrix = motions.shifted(&coordinates, weights, shift)?;
-    matrix.map(|matrix| matrix.solve(&now.left)).transpose()
-}
-
-/// Removes the rounding in `e - G l`, which weakly resisted motions would amplify.
-fn polished(problem: &FrictionProblem, motions: &Motions, y: &[f64], mut now: Trial) -> Result<Trial> {
-    for _ in 0..POLISHES {
-        let error = norm(&now.left);
-        if error == 0.0 {
-            break;
-        }
-        let Some(direction) = direction(problem, motions, &now, ROUNDING)? else { break };
-        let mut beta = now.beta.clone();
-        axpy(1.0, &direction, &mut beta);
-        let next = trial(problem, y, beta);
-        if !(norm(&next.left) < 0.5 * error) {
-            break;
-        }
-        now = next;
+    fn direction(&self, now: &Projected, shift: f64) -> Result<Option<Vec<f64>>> {
+        let shift = if self.delta > 0.0 { self.delta / self.motions.size() } else { shift };
+        let (coordinates, weights) = derivative(self.cones, &now.places);
+        let matrix = self.motions.shifted(&coordinates, weights, shift)?;
+        matrix.map(|matrix| matrix.solve(&now.left)).transpose()
     }
-    Ok(now)
-}
 
-fn trial(problem: &FrictionProblem, y: &[f64], beta: Vec<f64>) -> Trial {
-    let g_transposed = problem.g_transposed;
-    let mut v = y.to_vec();
-    v.iter_mut().enumerate().for_each(|(i, v)| *v += g_transposed.row_dot(i, &beta));
-    let (point, places) = problem.cones.nearest(&v);
-    let mut left = problem.e.to_vec();
-    g_transposed.mul_transposed_add(-1.0, &point, &mut left);
-    let phi = dot(&v, &point) - 0.5 * dot(&point, &point) - dot(problem.e, &beta);
-    Trial { beta, point, places, left, phi }
-}
-
-/// The first of the steps 1, 1/2, ... that reduces phi sufficiently.
-fn armijo(problem: &FrictionProblem, y: &[f64], now: &Trial, direction: &[f64]) -> Option<(Trial, f64)> {
-    let (slope, mut t) = (-dot(&now.left, direction), 1.0);
-    while t > SHORTEST {
-        let mut beta = now.beta.clone();
-        axpy(t, direction, &mut beta);
-        let next = trial(problem, y, beta);
-        if next.phi <= now.phi + SLOPE * t * slope + 4.0 * f64::EPSILON * now.phi.abs() {
-            return Some((next, t));
+    /// Removes from a motion the part that the rows with a force at this point resist.
+    pub fn settle(&self, at: &Projected, motion: &mut [f64]) -> Result<()> {
+        /// The second pass removes the rounding of the first.
+        const PASSES: usize = 2;
+        let (coordinates, weights) = derivative(self.cones, &at.places);
+        let Some(matrix) = self.motions.shifted(&coordinates, weights, ROUNDING)? else { return Ok(()) };
+        for _ in 0..PASSES {
+            axpy(-1.0, &matrix.solve(&matrix.resistance(motion))?, motion);
         }
-        t *= 0.5;
+        Ok(())
     }
-    None
+
+    pub fn at(&self, beta: Vec<f64>) -> Projected {
+        let Self { qp, cones, y, delta, .. } = self;
+        let mut v = y.to_vec();
+        v.iter_mut().enumerate().for_each(|(i, v)| *v += qp.g_transposed.row_dot(i, &beta));
+        let (point, places) = cones.nearest(&v);
+        let mut left = qp.left(&point);
+        axpy(-delta, &beta, &mut left);
+        let phi = dot(&v, &point) - 0.5 * dot(&point, &point) + 0.5 * delta * dot(&beta, &beta);
+        Projected { phi: phi - dot(qp.e, &beta), beta, point, places, left, met: false }
+    }
+
+    /// The first of the steps 1, 1/2, ... that reduces phi sufficiently; of the last steps only 1, and only if it halves the residual.
+    fn step(&self, now: &Projected, direction: &[f64], is_last: bool) -> Option<(Projected, f64)> {
+        let (slope, mut t) = (-dot(&now.left, direction), 1.0);
+        while t > SHORTEST {
+            let mut beta = now.beta.clone();
+            axpy(t, direction, &mut beta);
+            let next = self.at(beta);
+            let falls = next.phi <= now.phi + SLOPE * t * slope + 4.0 * f64::EPSILON * now.phi.abs();
+            match is_last {
+                true => return (norm(&next.left) < 0.5 * norm(&now.left)).then_some((next, t)),
+                false if falls && norm(&next.left).is_finite() => return Some((next, t)),
+                false => t *= 0.5,
+            }
+        }
+        None
+    }
 }
 
 /// PI' as a sum of `weight^2 v v'`: v is a coordinate; on the surface of a cone, the normal coordinate includes the one
@@ -191,10 +166,4 @@ pub fn derivative(cones: &Cones, places: &[Place]) -> (Vec<Coordinate>, Vec<f64>
     face.finish(cones);
     weights.resize(cones.order(), 1.0);
     (face.coordinates, weights)
-}
-
-impl Trial {
-    fn done(self, met: bool) -> Projected {
-        Projected { point: self.point, left: self.left, met }
-    }
 }

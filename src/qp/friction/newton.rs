@@ -2,10 +2,10 @@
 //! pair.
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, dot, norm};
+use crate::linalg::vector::{dot, norm};
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::{Face, Model, State};
-use crate::qp::friction::motions::{Inverse, Motions};
+use crate::qp::friction::motions::{Motions, Turned};
 use crate::qp::friction::pairs::{Pair, Pairs, Step};
 use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Slide, Tried};
 use crate::qp::{Counts, Rung};
@@ -41,9 +41,9 @@ pub struct Point {
 
 pub struct Run<'a, 'w> {
     pub problem: FrictionProblem<'a>,
-    pub motions: Option<Motions<'a>>,
+    pub motions: Motions<'a>,
     /// `(G G')^+`
-    pub all_rows: Option<Inverse>,
+    pub all_rows: Turned,
     pub pairs: Pairs,
     pub counts: Counts,
     pub tried: Tried,
@@ -97,9 +97,7 @@ impl Run<'_, '_> {
             if falls || step.rest < SOLVED || count == DIRECTIONS || self.counts.products >= self.limit {
                 return Ok(Some((best, falls)));
             }
-            there = (now.x.clone(), now.r.clone());
-            axpy(1.0, &step.dx, &mut there.0);
-            axpy(1.0, &step.dg, &mut there.1);
+            there = step.from(&now.x, &now.r, 1.0);
         }
         Ok(None)
     }
@@ -132,9 +130,7 @@ impl Run<'_, '_> {
     ) -> Result<(Point, bool)> {
         let mut best = Point { merit: f64::INFINITY, ..now.clone() };
         for &t in lengths {
-            let (mut x, mut g) = (now.x.clone(), now.g.clone());
-            axpy(t, &step.dx, &mut x);
-            axpy(t, &step.dg, &mut g);
+            let (x, g) = step.from(&now.x, &now.g, t);
             let alpha = self.turned(model, &x, &g, &now.alpha)?;
             let next = self.point(x, g, alpha)?;
             if next.merit <= (1.0 - FALLS * t) * now.merit {
@@ -162,8 +158,8 @@ impl Run<'_, '_> {
     }
 
     pub fn model(&mut self, face: Face) -> Result<Model> {
-        self.counts.coarse_factorisations += 2 * usize::from(self.motions.is_some());
-        Model::new(face, self.motions.as_ref())
+        self.counts.coarse_factorisations += 2;
+        Model::new(face, &mut self.motions)
     }
 
     /// The direction from a point with x and r: `v = v0 + Z y`, `G v = 0`.
@@ -196,7 +192,7 @@ impl Run<'_, '_> {
         y.iter_mut().for_each(|y| *y = -*y);
         model.balance(&mut y, None)?;
         model.balance(&mut y, None)?;
-        let image = self.problem.g_transposed.mul_transposed(&v);
+        let image = self.problem.qp.g_transposed.mul_transposed(&v);
         model.balance(&mut y, Some(&image))?;
         face.add(&y, &mut v);
         self.without_motions(&mut v)?;
@@ -205,10 +201,9 @@ impl Run<'_, '_> {
 
     /// `v <- v - G'(G G')^+ G v`
     pub fn without_motions(&mut self, v: &mut [f64]) -> Result<()> {
-        let Some(all_rows) = &self.all_rows else { return Ok(()) };
-        let beta = all_rows.solve(&self.problem.g_transposed.mul_transposed(v))?;
+        let beta = self.all_rows.solve(&self.problem.qp.g_transposed.mul_transposed(v))?;
         self.counts.coarse_solves += 1;
-        v.iter_mut().enumerate().for_each(|(i, v)| *v -= self.problem.g_transposed.row_dot(i, &beta));
+        v.iter_mut().enumerate().for_each(|(i, v)| *v -= self.problem.qp.g_transposed.row_dot(i, &beta));
         Ok(())
     }
 
@@ -222,7 +217,7 @@ impl Run<'_, '_> {
         v.iter_mut().for_each(|v| *v /= size);
         // normalisation of a long direction leaves a larger error
         self.without_motions(&mut v)?;
-        let none = vec![0.0; self.problem.e.len()];
+        let none = vec![0.0; self.problem.qp.e.len()];
         let unbalanced = self.imbalance(&v, &none)?.sqrt();
         let image = self.product(&v)?;
         self.pairs.keep(Pair { v, image, unbalanced });
@@ -245,7 +240,7 @@ impl Run<'_, '_> {
         interrupt::check()?;
         tally::costly();
         let mut image = vec![0.0; v.len()];
-        self.problem.a.try_apply(v, &mut image)?;
+        self.problem.qp.a.try_apply(v, &mut image)?;
         self.counts.products += 1;
         Ok(image)
     }
@@ -259,7 +254,7 @@ impl Run<'_, '_> {
 
     /// `r = g - G'a`
     pub fn gaps(&self, g: &[f64], alpha: &[f64]) -> Vec<f64> {
-        let g_transposed = self.problem.g_transposed;
+        let g_transposed = self.problem.qp.g_transposed;
         g.iter().enumerate().map(|(i, g)| g - g_transposed.row_dot(i, alpha)).collect()
     }
 
@@ -273,17 +268,16 @@ impl Run<'_, '_> {
 
     /// `|G'(G G')^+ (G x - e)|^2`
     pub fn balance_missed(&mut self, x: &[f64]) -> Result<f64> {
-        self.imbalance(x, self.problem.e)
+        self.imbalance(x, self.problem.qp.e)
     }
 
     /// As `balance_missed`, for any e.
     fn imbalance(&mut self, x: &[f64], e: &[f64]) -> Result<f64> {
-        let Some(all_rows) = &self.all_rows else { return Ok(0.0) };
         let mut left = e.to_vec();
-        self.problem.g_transposed.mul_transposed_add(-1.0, x, &mut left);
+        self.problem.qp.g_transposed.mul_transposed_add(-1.0, x, &mut left);
         self.counts.coarse_solves += 1;
         // NaN stays NaN
-        let square = dot(&left, &all_rows.solve(&left)?);
+        let square = dot(&left, &self.all_rows.solve(&left)?);
         Ok(if square < 0.0 { 0.0 } else { square })
     }
 }

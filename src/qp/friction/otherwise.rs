@@ -2,11 +2,9 @@
 //! `make rungs` counts what each saves.
 
 use crate::error::{Kind, Result};
-use crate::linalg::vector::axpy;
 use crate::qp::friction::coordinates::Law;
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
-use crate::qp::friction::nearest::project;
 use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::path::{LONG, SHORT};
 use crate::qp::friction::slides::Shown;
@@ -89,9 +87,7 @@ impl Run<'_, '_> {
         }
         let model = self.model(face)?;
         let step = self.enough(&model, start)?;
-        let (mut x, mut g) = (start.x.clone(), start.g.clone());
-        axpy(1.0, &step.dx, &mut x);
-        axpy(1.0, &step.dg, &mut g);
+        let (x, g) = step.from(&start.x, &start.g, 1.0);
         let alpha = self.turned(&model, &x, &g, &start.alpha)?;
         let found = self.point(x, g, alpha)?;
         self.newton_within(&found)
@@ -99,7 +95,7 @@ impl Run<'_, '_> {
 
     /// Newton's method from the nearest point within the cones.
     fn newton_within(&mut self, found: &Point) -> Result<Option<Point>> {
-        let inside = project(&self.problem, self.problem.cones, self.motions.as_ref(), &found.x)?;
+        let inside = self.projected(&found.x)?;
         if !inside.met {
             return Ok(None);
         }

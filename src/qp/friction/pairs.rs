@@ -97,6 +97,16 @@ pub struct Step {
     pub rest: f64,
 }
 
+impl Step {
+    /// `x + t dx` and `g + t dg`
+    pub fn from(&self, x: &[f64], g: &[f64], t: f64) -> (Vec<f64>, Vec<f64>) {
+        let (mut x, mut g) = (x.to_vec(), g.to_vec());
+        axpy(t, &self.dx, &mut x);
+        axpy(t, &self.dg, &mut g);
+        (x, g)
+    }
+}
+
 impl Pairs {
     pub fn count(&self) -> usize {
         self.kept.len()

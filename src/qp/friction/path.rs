@@ -2,12 +2,12 @@
 //! themselves.
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, norm_max};
+use crate::linalg::vector::norm_max;
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::Model;
 use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::pairs::Step;
-use crate::qp::friction::smooth::{face, missed, Smoothing};
+use crate::qp::friction::smooth::{face, Smoothing};
 
 /// The path that ends when the states are known: most problems on which Newton's method cycles need no more.
 pub const SHORT: Way = Way { relaxed: 0.0, last: 1e-3, solves: Solves::Pairs { products: 40 } };
@@ -60,7 +60,8 @@ impl Run<'_, '_> {
                 break;
             }
             let by = Smoothing { eps, relaxed: way.relaxed };
-            let model = self.model(face(cones, &now.x, &now.r, rho, by))?;
+            let (face, before) = face(cones, &now.x, &now.r, rho, by);
+            let model = self.model(face)?;
             let step = match way.solves {
                 Solves::Pairs { .. } => self.enough(&model, &now)?,
                 Solves::Dense(dense) => {
@@ -69,7 +70,7 @@ impl Run<'_, '_> {
                 }
             };
             self.tried.newton += 1;
-            let (next, t, left) = self.shortened(&model, &now, &step, by)?;
+            let (next, t, left) = self.shortened(&model, &now, &step, (by, before))?;
             now = next;
             if left <= eps * root {
                 eps *= if t == 1.0 { SHRINKS } else { SHRINKS_LESS };
@@ -86,9 +87,7 @@ impl Run<'_, '_> {
             if step.rest <= LEFT || self.counts.products >= self.limit {
                 break;
             }
-            let (mut x, mut r) = (now.x.clone(), now.r.clone());
-            axpy(1.0, &step.dx, &mut x);
-            axpy(1.0, &step.dg, &mut r);
+            let (x, r) = step.from(&now.x, &now.r, 1.0);
             let v = self.direction(model, preconditioner.as_deref(), (&x, &r))?;
             if !self.keep(v, now, model)? {
                 break;
@@ -105,24 +104,17 @@ impl Run<'_, '_> {
         model: &Model,
         now: &Point,
         step: &Step,
-        by: Smoothing,
+        (by, before): (Smoothing, f64),
     ) -> Result<(Point, f64, f64)> {
         let (cones, rho) = (self.problem.cones, RHO);
-        let before = missed(cones, &now.x, &now.r, rho, by);
-        let along = |t: f64| {
-            let (mut x, mut g) = (now.x.clone(), now.g.clone());
-            axpy(t, &step.dx, &mut x);
-            axpy(t, &step.dg, &mut g);
-            (x, g)
-        };
-        let (x, g) = along(1.0);
+        let (x, g) = step.from(&now.x, &now.g, 1.0);
         let there = self.turned(model, &x, &g, &now.alpha)?;
         let mut t = 1.0;
         loop {
-            let (x, g) = along(t);
+            let (x, g) = step.from(&now.x, &now.g, t);
             let alpha: Vec<f64> =
                 now.alpha.iter().zip(&there).map(|(now, there)| now + t * (there - now)).collect();
-            let left = missed(cones, &x, &self.gaps(&g, &alpha), rho, by);
+            let left = face(cones, &x, &self.gaps(&g, &alpha), rho, by).1;
             if left <= (1.0 - FALLS * t) * before || t <= SHORTEST {
                 let next = self.point(x, g, alpha)?;
                 let next = if next.merit.is_finite() { next } else { now.clone() };

@@ -39,7 +39,7 @@ impl Run<'_, '_> {
     /// Follows the forces of the supports as these become weaker; pairs serve all stiffnesses. Where Newton's method fails a path continues,
     /// or dense systems.
     pub fn with_supports(&mut self, tolerance: f64, dense: Option<&Dense>) -> Result<Shown> {
-        let (rows, modes) = (self.problem.b.len(), self.problem.e.len());
+        let (rows, modes) = (self.problem.qp.b.len(), self.problem.qp.e.len());
         if modes == 0 {
             return Ok(Shown::Nothing);
         }
@@ -112,7 +112,7 @@ impl Point {
 /// A slide along these amplitudes, with forces that are accurate to `nothing`, if nodes that carry forces do not open, tangential forces
 /// are at their bounds along the slip, and the load drives it.
 fn steady(problem: &FrictionProblem, (x, nothing): (&[f64], f64), alpha: Vec<f64>) -> Option<Slide> {
-    let rate = |row: usize| problem.g_transposed.row_dot(row, &alpha);
+    let rate = |row: usize| problem.qp.g_transposed.row_dot(row, &alpha);
     let rates: Vec<f64> = (0..x.len()).map(rate).collect();
     let small = STEADY * norm_max(&rates);
     let nodes = problem.cones.nodes();
@@ -132,7 +132,7 @@ fn steady(problem: &FrictionProblem, (x, nothing): (&[f64], f64), alpha: Vec<f64
         })
         && problem.cones.free().iter().all(|&row| rates[row].abs() <= small);
     // forces that drive the motion are not friction at its bound
-    let capacity = 1.0 - dot(&alpha, &alpha) / dot(problem.e, &alpha);
+    let capacity = 1.0 - dot(&alpha, &alpha) / dot(problem.qp.e, &alpha);
     let is_driven = (-STEADY..1.0).contains(&capacity);
     (is_steady && is_driven).then_some(Slide { alpha, capacity: capacity.max(0.0) })
 }

@@ -71,23 +71,23 @@ impl Disc {
     }
 }
 
-/// The linear model of the smoothed laws at x and r.
-pub fn face(cones: &Cones, x: &[f64], r: &[f64], rho: f64, by: Smoothing) -> Face {
+/// The linear model of the smoothed laws at x and r, and `|x - smoothed NAT(xi)|` with rho r on free rows: a force.
+pub fn face(cones: &Cones, x: &[f64], r: &[f64], rho: f64, by: Smoothing) -> (Face, f64) {
     let xi: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
     let mut face = Face::empty(cones, rho);
-    for node in cones.nodes() {
-        push(&mut face, node, (x, r, &xi), by);
-    }
+    let mut square: f64 = cones.free().iter().map(|&row| (rho * r[row]).powi(2)).sum();
+    square += cones.nodes().iter().map(|node| push(&mut face, node, (x, r, &xi), by)).sum::<f64>();
     face.finish(cones);
-    face
+    (face, square.sqrt())
 }
 
+/// Adds the coordinates of a node, and returns its part `|R|^2` of the square of what the laws miss:
 /// `p dr_n + (1 - p)/rho dx_n = -R_n/rho`, `p = phi'(xi_n)`, and of the tangential ones
 ///
 /// ```text
 /// c' dr_u + (1 - c')/rho dx_u - mu dc/db (dx_n + R_n)/rho = -R_u/rho,   k dr_v + (1 - k)/rho dx_v = -R_v/rho,   k = c/|xi_t|
 /// ```
-fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), by: Smoothing) {
+fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), by: Smoothing) -> f64 {
     let eps = by.eps;
     let (rho, now, trial) = (face.rho, node.of(x), node.of(xi));
     let (mut normal, mut missed) = (0.0, 0.0);
@@ -117,19 +117,6 @@ fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), by: 
     face.push_tangents(node.tangents(), along, coupling, [first, second]);
     face.closed.push(node.normal.is_some() && trial.normal > 0.0);
     face.states.push(if size > limit { State::Slip } else { State::Stick });
-}
-
-/// `|x - smoothed NAT(xi)|` with rho r on free rows: a force.
-pub fn missed(cones: &Cones, x: &[f64], r: &[f64], rho: f64, by: Smoothing) -> f64 {
-    let eps = by.eps;
-    let xi: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
-    let mut square: f64 = cones.free().iter().map(|&row| (rho * r[row]).powi(2)).sum();
-    for node in cones.nodes() {
-        let (now, trial) = (node.of(x), node.of(&xi));
-        let normal = node.normal.map_or(0.0, |_| phi(trial.normal, eps));
-        let disc = Disc::of(length(trial.tangential), node.limit(normal) + by.relaxed * eps, eps);
-        square += node.own_normal().map_or(0.0, |_| (now.normal - normal).powi(2));
-        square += (0..2).map(|k| (now.tangential[k] - disc.ratio * trial.tangential[k]).powi(2)).sum::<f64>();
-    }
-    square.sqrt()
+    let square = (0..2).map(|k| (now.tangential[k] - disc.ratio * trial.tangential[k]).powi(2)).sum::<f64>();
+    square + node.own_normal().map_or(0.0, |_| missed.powi(2))
 }

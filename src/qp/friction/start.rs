@@ -5,7 +5,7 @@ use crate::linalg::vector::{dot, norm};
 use crate::qp::friction::coordinates::of_rows;
 use crate::qp::friction::face::Face;
 use crate::qp::friction::motions::Motions;
-use crate::qp::friction::nearest::{project, Projected};
+use crate::qp::friction::nearest::{Projected, Target};
 use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::{FrictionLimits, FrictionObserver, FrictionProblem, FrictionStart, Tried};
 use crate::qp::Counts;
@@ -21,10 +21,9 @@ impl<'a, 'w> Run<'a, 'w> {
         start: FrictionStart,
         observer: &'w mut dyn FrictionObserver,
     ) -> Result<(Self, Projected)> {
-        let motions = Motions::of(&problem)?;
-        let rows = of_rows(problem.cones);
-        let all_rows = motions.as_ref().map(|motions| motions.of_all_rows(&rows)).transpose()?;
-        let y = start.x.map_or_else(|| vec![0.0; problem.b.len()], <[f64]>::to_vec);
+        let mut motions = Motions::of(&problem.qp, problem.cones)?;
+        let all_rows = motions.of_all_rows(&of_rows(problem.cones))?;
+        let y = start.x.map_or_else(|| vec![0.0; problem.qp.b.len()], <[f64]>::to_vec);
         let mut run = Self {
             pairs: start.pairs.of_order(y.len()),
             counts: Counts::default(),
@@ -39,9 +38,15 @@ impl<'a, 'w> Run<'a, 'w> {
             all_rows,
             observer,
         };
-        run.counts.coarse_factorisations += usize::from(run.all_rows.is_some());
-        let first = project(&problem, problem.cones, run.motions.as_ref(), &y)?;
+        run.counts.coarse_factorisations += 1;
+        let first = run.projected(&y)?;
         Ok((run, first))
+    }
+
+    /// PROJ_C(y)
+    pub fn projected(&self, y: &[f64]) -> Result<Projected> {
+        let FrictionProblem { qp, cones, .. } = &self.problem;
+        Target { qp, cones, motions: &self.motions, y, delta: 0.0 }.projected(vec![0.0; qp.e.len()])
     }
 
     /// The start point, the scale and the merit that counts as zero.
@@ -55,14 +60,14 @@ impl<'a, 'w> Run<'a, 'w> {
     /// `F x - d`
     pub fn gradient(&mut self, x: &[f64]) -> Result<Vec<f64>> {
         let mut g = if x.iter().all(|x| *x == 0.0) { vec![0.0; x.len()] } else { self.product(x)? };
-        g.iter_mut().zip(self.problem.b).for_each(|(g, d)| *g -= d);
+        g.iter_mut().zip(self.problem.qp.b).for_each(|(g, d)| *g -= d);
         Ok(g)
     }
 
     /// Sets the length to which gaps are relative, and the merit that counts as zero, which includes rounding of d.
     pub fn measure(&mut self, g: &[f64], tolerance: f64) -> Result<()> {
         self.scale = self.size_of_gaps(g)?;
-        self.small = (tolerance * self.scale).max(64.0 * f64::EPSILON * norm(self.problem.b).max(norm(g)));
+        self.small = (tolerance * self.scale).max(64.0 * f64::EPSILON * norm(self.problem.qp.b).max(norm(g)));
         Ok(())
     }
 
@@ -76,7 +81,7 @@ impl<'a, 'w> Run<'a, 'w> {
 
     /// N, `|P d|`, or `|P (F x - d)|` if that is 0.
     fn size_of_gaps(&mut self, g: &[f64]) -> Result<f64> {
-        let mut d = self.problem.b.to_vec();
+        let mut d = self.problem.qp.b.to_vec();
         let whole = norm(&d);
         self.without_motions(&mut d)?;
         if dot(&d, &d).sqrt() > NOTHING * whole {

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::linalg::{Csr, Operator};
 use crate::platform::memory::copied;
 use crate::qp::friction::{Cones, Face, FacePreconditioner, FrictionProblem, OnFace};
+use crate::qp::Qp;
 
 /// A problem with a support for each motion; the last r of its m + r rows are x_s.
 pub struct Supported<'a> {
@@ -27,30 +28,27 @@ struct OfRows<'a> {
 impl<'a> Supported<'a> {
     /// kappa > 0, no unit: rows have the compliance 1, the modes of a body `|G_p| = 1`.
     pub fn new(of: FrictionProblem<'a>, kappa: f64) -> Result<Self> {
-        let mut b = copied(of.b, "supports")?;
-        b.resize(of.b.len() + of.e.len(), 0.0);
-        let mut g_transposed = of.g_transposed.clone();
-        (0..of.e.len()).for_each(|k| g_transposed.push_row([(k, 1.0)]));
+        let mut b = copied(of.qp.b, "supports")?;
+        b.resize(of.qp.b.len() + of.qp.e.len(), 0.0);
+        let mut g_transposed = of.qp.g_transposed.clone();
+        (0..of.qp.e.len()).for_each(|k| g_transposed.push_row([(k, 1.0)]));
         let cones = Cones::new(b.len(), of.cones.nodes().to_vec())?;
-        let of_rows = |rows| OfRows { rows, kappa, count: of.b.len() };
+        let of_rows = |rows| OfRows { rows, kappa, count: of.qp.b.len() };
         let preconditioner = of.preconditioner.map(of_rows);
         Ok(Self { of, kappa, b, g_transposed, cones, preconditioner })
     }
 
     pub fn problem(&self) -> FrictionProblem<'_> {
         FrictionProblem {
-            a: self,
-            b: &self.b,
-            g_transposed: &self.g_transposed,
+            qp: Qp { a: self, b: &self.b, g_transposed: &self.g_transposed, ..self.of.qp },
             cones: &self.cones,
             preconditioner: self.preconditioner.as_ref().map(|of_rows| of_rows as &dyn FacePreconditioner),
-            ..self.of
         }
     }
 
     /// The part of e that the supports carry, r entries: 0 if friction and contact hold the load.
     pub fn unheld<'x>(&self, x: &'x [f64]) -> &'x [f64] {
-        &x[self.of.b.len()..]
+        &x[self.of.qp.b.len()..]
     }
 }
 
@@ -68,8 +66,8 @@ impl Operator for Supported<'_> {
 
     /// F and, for the supports, `1/kappa`.
     fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        let (rows, supports) = y.split_at_mut(self.of.b.len());
-        self.of.a.try_apply(&x[..rows.len()], rows)?;
+        let (rows, supports) = y.split_at_mut(self.of.qp.b.len());
+        self.of.qp.a.try_apply(&x[..rows.len()], rows)?;
         supports.iter_mut().zip(&x[rows.len()..]).for_each(|(y, x)| *y = x / self.kappa);
         Ok(())
     }

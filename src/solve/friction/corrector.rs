@@ -2,9 +2,9 @@
 //! carry a force.
 
 use crate::error::Result;
-use crate::qp::friction::{newton_step, slipping, without_force, Corrected, State};
+use crate::qp::friction::{newton_step, slipping, without_force, Corrected, FrictionProblem, State};
 use crate::qp::{DirectOnRows, Restricted};
-use crate::solve::friction::laws::{cones, problem};
+use crate::solve::friction::laws::cones;
 use crate::solve::recovery::{Faces, Recovery};
 
 /// The change of forces, over all rows, and amplitudes, and the states of the nodes that it assumes.
@@ -39,7 +39,8 @@ impl Recovery<'_> {
         let [x, r, follows] = [at.x, at.r, at.follows].map(|v| near.start(v));
         let at = Corrected { x: &x, r: &r, follows: &follows, ..at };
         let block = DirectOnRows { whole: *direct, rows: &rows };
-        let found = newton_step(&problem(near.qp(), &cones, None), block.direct(), &at)?;
+        let problem = FrictionProblem { qp: near.qp(), cones: &cones, preconditioner: None };
+        let found = newton_step(&problem, block.direct(), &at)?;
         Ok(found.map(|(forces, turn, states)| Step { forces: near.spread(&forces), turn, states }))
     }
 }

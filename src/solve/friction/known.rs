@@ -2,10 +2,10 @@
 
 use crate::error::Result;
 use crate::model::Settings;
-use crate::qp::friction::{known_face, FrictionLimits, FrictionObserver, FrictionReport};
+use crate::qp::friction::{known_face, FrictionLimits, FrictionObserver, FrictionProblem, FrictionReport};
 use crate::qp::{Qp, Restricted};
 use crate::setup::Ready;
-use crate::solve::friction::laws::{cones, problem, OfBodies};
+use crate::solve::friction::laws::{cones, OfBodies};
 use crate::solve::gaps::Gaps;
 
 /// Products with F of conjugate gradients in which closed and sticking nodes, slip directions and slips of the last answer are known:
@@ -15,7 +15,8 @@ pub fn on_known_states(ready: &Ready, settings: &Settings, qp: Qp, gaps: &Gaps) 
     let near = Restricted::new(qp, &answer.rows);
     let cones = cones(ready, gaps, &answer.rows)?;
     let preconditioner = ready.preconditioner.as_ref().map(|(_, of)| OfBodies { of, rows: &answer.rows });
-    let problem = problem(near.qp(), &cones, preconditioner.as_ref());
+    let preconditioner = preconditioner.as_ref().map(|of| of as _);
+    let problem = FrictionProblem { qp: near.qp(), cones: &cones, preconditioner };
     let products = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
     let limits = FrictionLimits { tolerance: settings.tolerance, products, direct: None };
     known_face(problem, limits, (&answer.x, &answer.alpha), &mut Silent).map(Some)

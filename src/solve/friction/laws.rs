@@ -6,8 +6,7 @@ use crate::constraints::FrictionNode;
 use crate::dual::{Preconditioner, TurnedFace, TurnedRow};
 use crate::error::Result;
 use crate::platform::memory::filled;
-use crate::qp::friction::{Cones, Face, FacePreconditioner, FrictionProblem, Law, Node, OnFace};
-use crate::qp::Qp;
+use crate::qp::friction::{Cones, Face, FacePreconditioner, Law, Node, OnFace};
 use crate::setup::Ready;
 use crate::solve::gaps::Gaps;
 
@@ -95,24 +94,6 @@ impl FacePreconditioner for OfBodies<'_> {
             }
         }
         Ok(Box::new(OnFree { free, face: self.of.turned(&rows)? }))
-    }
-}
-
-/// The dual with these laws.
-pub fn problem<'a>(
-    qp: Qp<'a>,
-    cones: &'a Cones,
-    preconditioner: Option<&'a OfBodies<'a>>,
-) -> FrictionProblem<'a> {
-    FrictionProblem {
-        a: qp.a,
-        b: qp.b,
-        g_transposed: qp.g_transposed,
-        blocks: qp.blocks,
-        rounding: qp.rounding,
-        e: qp.e,
-        cones,
-        preconditioner: preconditioner.map(|of| of as _),
     }
 }
 

@@ -8,13 +8,14 @@ mod slides;
 use crate::error::Result;
 use crate::progress::Steps;
 use crate::qp::friction::{
-    friction, unheld, Cones, DualAnswer, FrictionLimits, FrictionSolution, FrictionStart, State,
+    friction, unheld, Cones, DualAnswer, FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart,
+    State,
 };
 use crate::qp::{AcceptanceTest, AnswerFace, Qp, Restricted, Solution, Verdict};
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::fallback::{Found, MethodOptions};
-use crate::solve::friction::laws::{cones, problem, OfBodies};
+use crate::solve::friction::laws::{cones, OfBodies};
 use crate::solve::friction::slides::named;
 use crate::solve::gaps::Gaps;
 
@@ -31,7 +32,7 @@ pub fn nearest_forces(
 ) -> Result<(Vec<f64>, Vec<f64>)> {
     let near = Restricted::new(qp, rows);
     let cones = cones(ready, gaps, rows)?;
-    let (x, rest) = unheld(&problem(near.qp(), &cones, None), weights)?;
+    let (x, rest) = unheld(&near.qp(), &cones, weights)?;
     Ok((near.spread(&x), rest))
 }
 
@@ -48,7 +49,8 @@ pub fn solve_with_friction(
     let ready = case.ready;
     let cones: Cones = cones(ready, gaps, rows)?;
     let preconditioner = ready.preconditioner.as_ref().map(|(_, of)| OfBodies { of, rows });
-    let problem = problem(near.qp(), &cones, preconditioner.as_ref());
+    let preconditioner = preconditioner.as_ref().map(|of| of as _);
+    let problem = FrictionProblem { qp: near.qp(), cones: &cones, preconditioner };
     let most = usize::try_from(means.settings.max_steps).unwrap_or(usize::MAX);
     let limits = FrictionLimits {
         tolerance: means.settings.tolerance,
