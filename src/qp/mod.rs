@@ -29,7 +29,7 @@ pub use conjugate::MOST as KEPT;
 pub use face::{Direct, Face};
 pub use interior::{Interior, Inverse, Point, Stiffness};
 pub use nearest::{nearest_point, Nearest, Polyhedron};
-pub use proportioning::{minimise, weighted};
+pub use proportioning::minimise;
 pub use restricted::{DirectOnRows, Judged, Restricted};
 pub use rungs::{during, Rung, Tries};
 

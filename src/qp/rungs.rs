@@ -21,7 +21,6 @@ macro_rules! rungs {
 rungs! {
     Start: "first face", "S6.1: a warm start's own face is tried first";
     Cold: "cold start", "S6.3: a start far off is discarded";
-    HardlyUnique: "less regularised", "S6.2: the interior point method with less regularisation";
     NoBounds: "without bounds", "J1: a projection starts from the multiplier without bounds";
     ProjectionInside: "projection inside", "J3: an interior point method after short steps of a projection";
     Fit: "fitted again", "S8: the least-squares multiplier is refined";

@@ -16,11 +16,12 @@
 
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::vector::{axpy, dot, norm, NOISE};
+use crate::qp::friction::unheld;
 use crate::qp::{Qp, Rung, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::feedback::{Feedback, NegativeMotions};
-use crate::solve::friction::nearest_forces;
+use crate::solve::friction::cones;
 use crate::solve::recovery::Recovery;
 use crate::solve::sliding::Sliding;
 
@@ -188,7 +189,7 @@ impl<'a> Search<'a, '_> {
     fn unstopped(&self, qp: Qp, x: &[f64]) -> Result<Option<Sliding>> {
         let (ready, scaled) = (self.case.ready, self.recovery.scaled);
         let (rows, sizes) = ((0..x.len()).collect::<Vec<_>>(), ready.dual.sizes_of_modes());
-        let (_, rest) = nearest_forces(ready, qp, &scaled.gaps, &rows, &sizes)?;
+        let (_, rest) = unheld(&qp, &cones(ready, &scaled.gaps, &rows)?, &sizes)?;
         let left = rest.iter().zip(&sizes).map(|(e, size)| size * size * e).collect();
         let motion = Sliding::of(self.recovery, vec![0.0; x.len()], left)?;
         Ok(motion.falls_beside_forces(self.recovery)?.then_some(motion))

@@ -10,7 +10,7 @@ use crate::problem::Content;
 fn counts(deck: Deck) -> (usize, usize) {
     let given = deck.given();
     let found = given.from(FrictionStart::default(), 1e-9, 0);
-    assert_eq!(found.verdict, Verdict::Solved, "{deck:?} {} {:?}", found.merit, found.tried);
+    assert_eq!(found.verdict, Verdict::Solved, "{deck:?} {} {:?}", found.merit, found.counts);
     let (laws, balance) = given.missed(&found);
     assert!(laws < 1e-6 && balance < 1e-10, "{deck:?} {laws:e} {balance:e}");
     let linear =
@@ -21,7 +21,7 @@ fn counts(deck: Deck) -> (usize, usize) {
         "{}D {b} mu {mu} load {load}: {own} / {of} = {:.2}, {:?}",
         deck.dim,
         own as f64 / of as f64,
-        found.tried
+        found.counts
     );
     (own, of)
 }
@@ -77,7 +77,7 @@ fn thin_plates_with_little_friction_are_solved() {
                 let found = given.from(FrictionStart::default(), 1e-9, limit);
                 println!(
                     "{n} {blocks} mu {mu} load {load}: {:?} {} {:?}",
-                    found.verdict, found.counts.products, found.tried
+                    found.verdict, found.counts.products, found.counts
                 );
                 unsolved += usize::from(found.verdict != Verdict::Solved);
             }
@@ -98,7 +98,7 @@ fn nine_steps_of_a_loop_cost_less_than_cold_linear_problems() {
             given.d.iter_mut().zip(&slips).for_each(|(d, slip)| *d -= slip);
             let start = FrictionStart { x: x.as_deref(), alpha: alpha.as_deref(), pairs };
             let found = given.from(start, 1e-9, 0);
-            assert_eq!(found.verdict, Verdict::Solved, "{load} {} {:?}", found.merit, found.tried);
+            assert_eq!(found.verdict, Verdict::Solved, "{load} {} {:?}", found.merit, found.counts);
             let known =
                 known_face(given.problem(), given.limits(1e-9, 0), (&found.x, &found.alpha), &mut Content)
                     .unwrap();

@@ -16,7 +16,7 @@ fn block() -> Deck {
 }
 
 fn right(given: &Given, found: &FrictionSolution, what: &str) {
-    assert_eq!(found.verdict, Verdict::Solved, "{what}: {} {:?}", found.merit, found.tried);
+    assert_eq!(found.verdict, Verdict::Solved, "{what}: {} {:?}", found.merit, found.counts);
     let (laws, balance) = given.missed(found);
     assert!(laws < 1e-6 && balance < 1e-9, "{what}: {laws:e} {balance:e}");
 }
@@ -99,7 +99,7 @@ fn stiff_blocks_upon_soft_ones_are_solved() {
                 Deck { contrast, ..Deck::new(dim, if dim == 2 { 12 } else { 4 }, 3, 0.6, 0.8) }.given();
             let found = given.from(FrictionStart::default(), 1e-9, 400);
             right(&given, &found, "contrast");
-            println!("contrast {contrast} {dim}D: {} products {:?}", found.counts.products, found.tried);
+            println!("contrast {contrast} {dim}D: {} products {:?}", found.counts.products, found.counts);
         }
     }
 }
@@ -350,7 +350,7 @@ fn a_tower_of_many_blocks_stands() {
         let mut given = Given::new(f, d, nodes);
         (given.g_transposed, given.e) = (g, e);
         let found = given.from(FrictionStart::default(), 1e-9, 0);
-        println!("{blocks} blocks: {} products {:?}", found.counts.products, found.tried);
+        println!("{blocks} blocks: {} products {:?}", found.counts.products, found.counts);
         right(&given, &found, "tower");
     }
 }
@@ -362,7 +362,7 @@ fn blocks_are_solved_without_a_preconditioner() {
         let mut given = deck.given();
         given.preconditioner = None;
         let found = given.from(FrictionStart::default(), 1e-8, 0);
-        println!("{}D {}: {} products {:?}", deck.dim, deck.blocks, found.counts.products, found.tried);
+        println!("{}D {}: {} products {:?}", deck.dim, deck.blocks, found.counts.products, found.counts);
         right(&given, &found, "no preconditioner");
     }
 }
@@ -387,7 +387,7 @@ fn tangential_rows_of_very_different_lengths_are_solved() {
             *matrix = Matrix::from_fn(m, m, |i, j| by(i) * matrix.get(i, j) * by(j)).unwrap();
         }
         let found = given.from(FrictionStart::default(), 1e-9, 400);
-        println!("{factor}: {:?} {} products {:?}", found.verdict, found.counts.products, found.tried);
+        println!("{factor}: {:?} {} products {:?}", found.verdict, found.counts.products, found.counts);
         right(&given, &found, "lengths");
     }
 }

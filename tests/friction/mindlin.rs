@@ -41,8 +41,8 @@ fn given(n: usize, part: f64) -> (Given, Vec<f64>) {
 fn error(n: usize, part: f64) -> f64 {
     let (given, place) = given(n, part);
     let found = given.from(FrictionStart::default(), 1e-10, 0);
-    assert_eq!(found.verdict, Verdict::Solved, "{} {:?}", found.merit, found.tried);
-    println!("n {n} push {part}: {} products, {:?}", found.counts.products, found.tried);
+    assert_eq!(found.verdict, Verdict::Solved, "{} {:?}", found.merit, found.counts);
+    println!("n {n} push {part}: {} products, {:?}", found.counts.products, found.counts);
     let h = 3.0 / n as f64;
     let stuck = (1.0 - part).sqrt();
     let half = |x: f64, a: f64| (1.0 - x * x / (a * a)).max(0.0).sqrt();

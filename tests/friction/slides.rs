@@ -38,7 +38,7 @@ fn a_push_just_beyond_what_friction_holds_is_a_slide_at_the_price_of_a_few_held_
     for seed in 0..60 {
         let (k, mu) = (2 + seed as usize % 11, [0.1, 0.3, 0.6, 1.0][seed as usize / 11 % 4]);
         let far = solved(&block(seed, k, mu, 3.0));
-        let Some(slide) = far.slide else { panic!("{seed}: {:?} {:?}", far.verdict, far.tried) };
+        let Some(slide) = far.slide else { panic!("{seed}: {:?} {:?}", far.verdict, far.counts) };
         let limit = 3.0 * slide.capacity;
         let held = solved(&block(seed, k, mu, 0.9 * limit));
         assert_eq!(held.verdict, Verdict::Solved, "{seed}");
@@ -53,7 +53,7 @@ fn a_push_just_beyond_what_friction_holds_is_a_slide_at_the_price_of_a_few_held_
                     assert!((slide.capacity - 1.0 / over).abs() < 1e-4, "{seed} {over}: {}", slide.capacity);
                     named += 1;
                 }
-                None => println!("{seed} {over}: {:?} {:?} {}", found.verdict, found.tried, found.merit),
+                None => println!("{seed} {over}: {:?} {:?} {}", found.verdict, found.counts, found.merit),
             }
         }
     }

@@ -164,7 +164,7 @@ fn found(n: usize, push: f64) -> Found {
     let problem = FrictionProblem { qp, cones: &cones, preconditioner: Some(&spheres.inverse) };
     let limits = FrictionLimits { tolerance: 1e-9, products: 1000, direct: None };
     let found = friction(problem, limits, FrictionStart::default(), &mut Content, &mut Content).unwrap();
-    assert_eq!(found.verdict, Verdict::Solved, "{} {:?}", found.merit, found.tried);
+    assert_eq!(found.verdict, Verdict::Solved, "{} {:?}", found.merit, found.counts);
     let linear = known_face(problem, limits, (&found.x, &found.alpha), &mut Content).unwrap();
     let (mut missed, mut square) = (0.0, 0.0);
     for (i, &place) in spheres.place.iter().enumerate() {

@@ -17,7 +17,7 @@ fn weak_supports_carry_what_friction_does_not_hold() {
             let found =
                 friction(supported.problem(), limits, FrictionStart::default(), &mut Content, &mut Content)
                     .unwrap();
-            assert_eq!(found.verdict, Verdict::Solved, "{load} {kappa} {} {:?}", found.merit, found.tried);
+            assert_eq!(found.verdict, Verdict::Solved, "{load} {kappa} {} {:?}", found.merit, found.counts);
             size(supported.unheld(&found.x)) / size(&given.e)
         };
         let (held, weaker) = (carried(0.5, 1e-3), carried(0.5, 1e-5));

@@ -85,7 +85,7 @@ impl Run<'_, '_> {
             if (1..nodes.len()).any(|i| nodes[i].follows && states[i].closed != states[i - 1].closed) {
                 continue;
             }
-            self.tried.combinations += 1;
+            self.counts.starts += 1;
             let Some(found) = self.of_states(dense, &states, start)? else { continue };
             if best.as_ref().is_none_or(|best| norm(&found.alpha) < norm(&best.alpha)) {
                 best = Some(found);

@@ -89,33 +89,15 @@ impl Node {
 
     /// PI, the nearest point of the cone.
     pub fn nearest(&self, force: Force) -> (Force, Place) {
-        let Force { normal: n, tangential } = force;
-        let length = length(tangential);
-        if n >= 0.0 && length <= self.limit(n) {
-            return (force, Place::Inside);
-        }
-        let along = direction(tangential);
-        let shortened = |normal: f64, limit: f64| {
-            let ratio = if length > 0.0 { limit / length } else { 0.0 };
-            (Force { normal, tangential: along.map(|u| limit * u) }, ratio)
-        };
-        let on_surface = (n + self.mu * (length - self.bound)) / (1.0 + self.mu * self.mu);
-        if self.normal.is_some() && length > self.bound + self.mu * n && on_surface > 0.0 {
-            let (force, ratio) = shortened(on_surface, self.bound + self.mu * on_surface);
-            return (force, Place::Surface { along, ratio });
-        }
-        if length <= self.bound {
-            return (Force { normal: 0.0, tangential }, Place::Open);
-        }
-        let (force, ratio) = shortened(0.0, self.bound);
-        (force, Place::Rim { along, ratio })
+        self.beside(force, nearest_normal(&[*self], |_| force))
     }
 
-    /// The nearest force with this normal part.
-    fn beside(&self, tangential: [f64; 2], normal: f64) -> (Force, Place) {
-        let (length, limit) = (length(tangential), self.limit(normal));
+    /// The nearest force with this normal part, and where it is.
+    fn beside(&self, force: Force, normal: f64) -> (Force, Place) {
+        let (tangential, limit) = (force.tangential, self.limit(normal));
+        let length = length(tangential);
         if length <= limit {
-            let place = if normal > 0.0 { Place::Inside } else { Place::Open };
+            let place = if force.normal >= 0.0 || normal > 0.0 { Place::Inside } else { Place::Open };
             return (Force { normal, tangential }, place);
         }
         let (along, ratio) = (direction(tangential), limit / length);
@@ -134,13 +116,13 @@ impl Node {
 
 /// The n >= 0 of least `(n - v_n)^2 + sum (|t_i| - bound_i - mu_i n)_+^2` over nodes that share it. Its derivative is concave:
 /// Newton's steps from below do not pass the zero, and end once no further node comes within its limit.
-fn shared_normal(nodes: &[Node], v: &[f64]) -> f64 {
-    let given = nodes[0].of(v).normal;
+fn nearest_normal(nodes: &[Node], v: impl Fn(&Node) -> Force) -> f64 {
+    let given = v(&nodes[0]).normal;
     let mut normal = given.max(0.0);
     loop {
         let (mut top, mut bottom) = (given, 1.0);
         for node in nodes {
-            let length = length(node.of(v).tangential);
+            let length = length(v(node).tangential);
             if length > node.limit(normal) {
                 top += node.mu * (length - node.bound);
                 bottom += node.mu * node.mu;
@@ -210,6 +192,17 @@ impl Cones {
         Ok(Self { order, nodes, free })
     }
 
+    /// Half lines of these rows, without friction.
+    pub fn half_lines(bounded: &[bool]) -> Result<Self> {
+        let rows = (0..bounded.len()).filter(|&row| bounded[row]);
+        Self::new(bounded.len(), rows.map(|row| Node::new(Some(row), &[], 0.0, 0.0)).collect::<Result<_>>()?)
+    }
+
+    /// No node has a tangential row.
+    pub fn are_half_lines(&self) -> bool {
+        self.nodes.iter().all(|node| node.count == 0)
+    }
+
     /// m
     pub fn order(&self) -> usize {
         self.order
@@ -232,13 +225,9 @@ impl Cones {
     pub fn nearest(&self, v: &[f64]) -> (Vec<f64>, Vec<Place>) {
         let (mut point, mut places) = (v.to_vec(), Vec::with_capacity(self.nodes.len()));
         for nodes in self.groups() {
-            let shared = (nodes.len() > 1).then(|| shared_normal(nodes, v));
+            let normal = nearest_normal(nodes, |node| node.of(v));
             for node in nodes {
-                let given = node.of(v);
-                let (force, place) = match shared {
-                    Some(normal) => node.beside(given.tangential, normal),
-                    None => node.nearest(given),
-                };
+                let (force, place) = node.beside(node.of(v), normal);
                 node.put(force, &mut point);
                 places.push(place);
             }

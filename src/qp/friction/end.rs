@@ -60,18 +60,8 @@ pub fn known_face(
     g = run.gradient(&x)?;
     let alpha = run.turned(&model, &x, &g, &vec![0.0; problem.qp.e.len()])?;
     let start = run.point(x, g, alpha)?;
-    let preconditioner = problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
     let size = norm(&model.reduced(model.face.residual(&start.x, &start.r))?);
-    let (mut there, mut rest) = ((start.x.clone(), start.r.clone()), 1.0);
-    while rest * size > run.small && run.counts.products < limits.products {
-        let v = run.direction(&model, preconditioner.as_deref(), (&there.0, &there.1))?;
-        if !run.keep(v, &start, &model)? {
-            break;
-        }
-        let step = run.pairs.minimise(&model, model.face.residual(&start.x, &start.r))?;
-        rest = step.rest;
-        there = step.from(&start.x, &start.r, 1.0);
-    }
+    run.enough(&model, &start, (run.small / size, usize::MAX))?;
     Ok(run.counts.products + 1)
 }
 
@@ -180,7 +170,6 @@ impl<'a> Run<'a, '_> {
         let cones: &'a Cones = self.problem.cones;
         let states = if r.len() == x.len() { Face::at(cones, &x, &r, RHO).states } else { Vec::new() };
         let merit = ratio(merit, self.scale);
-        let counts = Counts { newton: self.tried.newton, starts: self.tried.starts(), ..self.counts };
         FrictionSolution {
             x,
             alpha,
@@ -188,8 +177,7 @@ impl<'a> Run<'a, '_> {
             scale: self.scale,
             merit,
             verdict,
-            counts,
-            tried: self.tried,
+            counts: self.counts,
             slide: self.slide,
             pairs: self.pairs,
         }

@@ -98,28 +98,6 @@ pub struct FrictionReport {
     pub slipping: usize,
 }
 
-/// The attempts made.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Tried {
-    /// Newton steps, each with a new face.
-    pub newton: usize,
-    /// Paths along smoothed laws, with pairs and with dense matrices.
-    pub paths: usize,
-    pub dense_paths: usize,
-    /// A start from the answer with all closed nodes sticking.
-    pub sticking: bool,
-    /// Combinations of states.
-    pub combinations: usize,
-}
-
-impl Tried {
-    /// Number of starts, including the first.
-    pub fn starts(&self) -> usize {
-        let others = self.paths + self.dense_paths;
-        1 + others + usize::from(self.sticking) + self.combinations
-    }
-}
-
 /// A steady slide: the forces at their bounds hold only a part of the load.
 #[derive(Debug, Clone)]
 pub struct Slide {
@@ -141,7 +119,6 @@ pub struct FrictionSolution {
     pub merit: f64,
     pub verdict: Verdict,
     pub counts: Counts,
-    pub tried: Tried,
     /// A slide that weak supports have shown, if no rest was found beside it.
     pub slide: Option<Slide>,
     /// For later solves with the same F, G and rows.

@@ -7,7 +7,7 @@ use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::{Face, Model, State};
 use crate::qp::friction::motions::{Motions, Turned};
 use crate::qp::friction::pairs::{Pair, Pairs, Step};
-use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Slide, Tried};
+use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Slide};
 use crate::qp::{Counts, Rung};
 
 /// rho, by which forces and lengths are compared, no unit: rows have the compliance `b K_d^-1 b' + C = 1`.
@@ -46,7 +46,6 @@ pub struct Run<'a, 'w> {
     pub all_rows: Turned,
     pub pairs: Pairs,
     pub counts: Counts,
-    pub tried: Tried,
     /// Limit of products.
     pub limit: usize,
     /// `|P d|`, to which gaps are relative, and the merit that counts as zero.
@@ -62,21 +61,21 @@ pub struct Run<'a, 'w> {
 impl Run<'_, '_> {
     /// Continues from `now` until the laws are satisfied, or the merit falls too slowly.
     pub fn newton(&mut self, mut now: Point) -> Result<Point> {
-        let mut best = (now.merit, self.tried.newton, self.counts.products);
+        let mut best = (now.merit, self.counts.newton, self.counts.products);
         if self.pairs.count() > 0 {
             now = self.without_products(now)?;
         }
         while !self.is_met(&now)
-            && self.tried.newton < best.1 + STEPS
+            && self.counts.newton < best.1 + STEPS
             && self.counts.products < self.limit.min(best.2 + PRODUCTS)
         {
             let model = self.model(Face::at(self.problem.cones, &now.x, &now.r, RHO))?;
             let Some((next, falls)) = self.step(&model, &now)? else { break };
-            self.tried.newton += 1;
+            self.counts.newton += 1;
             now = if falls { self.without_products(next)? } else { next };
             self.reached(&now);
             if now.merit < ENOUGH * best.0 {
-                best = (now.merit, self.tried.newton, self.counts.products);
+                best = (now.merit, self.counts.newton, self.counts.products);
             }
         }
         Ok(now)
@@ -224,7 +223,7 @@ impl Run<'_, '_> {
         let of = |state: State| model.face.states.iter().filter(|own| **own == state).count();
         let report = FrictionReport {
             products: self.counts.products,
-            newton: self.tried.newton,
+            newton: self.counts.newton,
             merit: now.merit,
             small: self.small,
             closed: model.face.closed.iter().filter(|closed| **closed).count(),

@@ -6,7 +6,7 @@ use crate::qp::friction::coordinates::Law;
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
 use crate::qp::friction::newton::{Point, Run, RHO};
-use crate::qp::friction::path::{LONG, SHORT};
+use crate::qp::friction::path::{DIRECTIONS, LEFT, LONG, SHORT};
 use crate::qp::friction::slides::Shown;
 use crate::qp::friction::FrictionLimits;
 use crate::qp::Rung;
@@ -72,7 +72,7 @@ impl Run<'_, '_> {
 
     /// From the answer for which all nodes that are closed at the start stick.
     fn sticking(&mut self, start: &Point) -> Result<Option<Point>> {
-        self.tried.sticking = true;
+        self.counts.starts += 1;
         let mut face = Face::at(self.problem.cones, &start.x, &start.r, RHO);
         let sticks = Law::Free { damping: 0.0, shift: 0.0 };
         let mut k = 0;
@@ -86,7 +86,7 @@ impl Run<'_, '_> {
             k += node.tangents().len();
         }
         let model = self.model(face)?;
-        let step = self.enough(&model, start)?;
+        let step = self.enough(&model, start, (LEFT, DIRECTIONS))?;
         let (x, g) = step.from(&start.x, &start.g, 1.0);
         let alpha = self.turned(&model, &x, &g, &start.alpha)?;
         let found = self.point(x, g, alpha)?;

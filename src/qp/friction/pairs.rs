@@ -2,13 +2,14 @@
 //! loads.
 
 use std::collections::VecDeque;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 
 use crate::error::Result;
 use crate::linalg::dense::least_squares::least_squares;
 use crate::linalg::vector::{axpy, norm};
 use crate::linalg::Matrix;
 use crate::platform::{interrupt, tally};
+use crate::qp::between_solves::locked;
 use crate::qp::friction::face::Model;
 
 /// Limit of pairs; the oldest pair is dropped first.
@@ -83,10 +84,6 @@ impl PairsBetween {
     pub fn take_answer(&self) -> Option<DualAnswer> {
         locked(&self.answer).take()
     }
-}
-
-fn locked<T>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
-    kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The combination of all pairs that minimises the residual of the linear model.

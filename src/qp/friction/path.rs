@@ -23,8 +23,8 @@ const SHRINKS_LESS: f64 = 0.6;
 /// Limit of systems solved.
 const SYSTEMS: usize = 120;
 /// Limit of directions per system, and the part of its residual that may remain.
-const DIRECTIONS: usize = 10;
-const LEFT: f64 = 0.3;
+pub const DIRECTIONS: usize = 10;
+pub const LEFT: f64 = 0.3;
 /// A step of length t must reduce the residual by at least this part of t.
 const FALLS: f64 = 0.1;
 const SHORTEST: f64 = 1e-4;
@@ -32,10 +32,7 @@ const SHORTEST: f64 = 1e-4;
 impl Run<'_, '_> {
     /// Newton's method from the end point of a path that begins at the start.
     pub fn along_path(&mut self, start: &Point, way: Way) -> Result<Point> {
-        match way.solves {
-            Solves::Pairs { .. } => self.tried.paths += 1,
-            Solves::Dense(_) => self.tried.dense_paths += 1,
-        }
+        self.counts.starts += 1;
         let begun = self.point(start.x.clone(), start.g.clone(), start.alpha.clone())?;
         let end = self.path(begun, way)?;
         if self.is_met(&end) {
@@ -63,13 +60,13 @@ impl Run<'_, '_> {
             let (face, before) = face(cones, &now.x, &now.r, rho, by);
             let model = self.model(face)?;
             let step = match way.solves {
-                Solves::Pairs { .. } => self.enough(&model, &now)?,
+                Solves::Pairs { .. } => self.enough(&model, &now, (LEFT, DIRECTIONS))?,
                 Solves::Dense(dense) => {
                     self.counts.direct += 1;
                     dense.step(&self.problem, &model.face, &now)?
                 }
             };
-            self.tried.newton += 1;
+            self.counts.newton += 1;
             let (next, t, left) = self.shortened(&model, &now, &step, (by, before))?;
             now = next;
             if left <= eps * root {
@@ -79,12 +76,12 @@ impl Run<'_, '_> {
         Ok(now)
     }
 
-    /// Adds directions to the pairs until little of the residual is left.
-    pub fn enough(&mut self, model: &Model, now: &Point) -> Result<Step> {
+    /// Adds at most `most` directions to the pairs until no more than this part of the residual is left.
+    pub fn enough(&mut self, model: &Model, now: &Point, (left, most): (f64, usize)) -> Result<Step> {
         let preconditioner = self.problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
         let mut step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
-        for _ in 0..DIRECTIONS {
-            if step.rest <= LEFT || self.counts.products >= self.limit {
+        for _ in 0..most {
+            if step.rest <= left || self.counts.products >= self.limit {
                 break;
             }
             let (x, r) = step.from(&now.x, &now.r, 1.0);

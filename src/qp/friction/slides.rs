@@ -14,7 +14,7 @@ use crate::qp::friction::newton::{Point, Run};
 use crate::qp::friction::path::SHORT;
 use crate::qp::friction::supports::Supported;
 use crate::qp::friction::{FrictionLimits, FrictionProblem, FrictionStart, Slide};
-use crate::qp::Rung;
+use crate::qp::{Counts, Rung};
 
 /// Stiffness of the supports, no unit, the last one also the accuracy of their forces: rows have the compliance 1, the modes of a body `|G_p| = 1`.
 const STIFFEST: f64 = 1e-3;
@@ -64,12 +64,10 @@ impl Run<'_, '_> {
             let (met, small) = (run.is_met(&found), run.small);
             pairs = std::mem::take(&mut run.pairs);
             pairs.stiffen(rows, WEAKER);
-            self.counts = self.counts + run.counts;
-            let tried = run.tried;
-            self.tried.newton += tried.newton;
+            self.counts = self.counts + Counts { starts: 0, ..run.counts };
             kappa *= WEAKER;
-            // after all combinations of states there is no answer for this stiffness, but perhaps for the next
-            if !met && tried.combinations == 0 {
+            // after dense systems there is no answer for this stiffness, but perhaps for the next
+            if !met && dense.is_none() {
                 break;
             }
             if let Some(before) = before.filter(|_| met) {

@@ -7,7 +7,7 @@ use crate::qp::friction::face::Face;
 use crate::qp::friction::motions::Motions;
 use crate::qp::friction::nearest::{Projected, Target};
 use crate::qp::friction::newton::{Point, Run, RHO};
-use crate::qp::friction::{FrictionLimits, FrictionObserver, FrictionProblem, FrictionStart, Tried};
+use crate::qp::friction::{FrictionLimits, FrictionObserver, FrictionProblem, FrictionStart};
 use crate::qp::Counts;
 
 /// `|P d|` is zero if it is below this part of `|d|`.
@@ -24,10 +24,9 @@ impl<'a, 'w> Run<'a, 'w> {
         let mut motions = Motions::of(&problem.qp, problem.cones)?;
         let all_rows = motions.of_all_rows(&of_rows(problem.cones))?;
         let y = start.x.map_or_else(|| vec![0.0; problem.qp.b.len()], <[f64]>::to_vec);
-        let mut run = Self {
+        let run = Self {
             pairs: start.pairs.of_order(y.len()),
-            counts: Counts::default(),
-            tried: Tried::default(),
+            counts: Counts { coarse_factorisations: 1, starts: 1, ..Counts::default() },
             limit: limits.products,
             scale: 0.0,
             small: 0.0,
@@ -38,7 +37,6 @@ impl<'a, 'w> Run<'a, 'w> {
             all_rows,
             observer,
         };
-        run.counts.coarse_factorisations += 1;
         let first = run.projected(&y)?;
         Ok((run, first))
     }

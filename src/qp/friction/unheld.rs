@@ -1,5 +1,9 @@
 //! The forces within the cones that come closest to balancing a load if none balance it, `min |e - G l|`, and the
-//! remainder `rest = e - G l`:
+//! remainder `rest = e - G l`, which decides whether the equalities can be satisfied: `e'rest = |rest|^2`, and no force within the cones
+//! works against `G'rest`. G and e are weighted, mode by mode.
+//!
+//! If all cones are half lines and G has few columns, rest is the point of the cone of these vectors that is nearest to e; this method is
+//! finite, and loses no digits to `G G'`. Otherwise
 //!
 //! ```text
 //! delta beta + G PI(G'beta) = e,   delta -> 0,   delta beta -> rest
@@ -7,15 +11,18 @@
 //!
 //! `G'rest` is in the polar cone up to delta times the forces: no force within the cones resists this motion by more than
 //! that. Coefficients are slightly increased, so that the actual friction does not resist the motion at all; the
-//! remaining effect of delta is subtracted from the motion. G and e are weighted, mode by mode.
+//! remaining effect of delta is subtracted from the motion.
 
-use crate::error::Result;
+use crate::error::{Kind, Result};
 use crate::linalg::vector::norm;
+use crate::linalg::Csr;
 use crate::qp::friction::cones::Cones;
 use crate::qp::friction::motions::Motions;
 use crate::qp::friction::nearest::{Projected, Target};
-use crate::qp::Qp;
+use crate::qp::{nearest_point, Polyhedron, Qp};
 
+/// Limit of modes for which a square matrix over the modes, and one rotation of it per row and mode, are inexpensive.
+const FEW: usize = 1500;
 /// delta relative to the largest diagonal entry of `G G'`: the first value, the factor, and the last value.
 const FIRST: f64 = 1.0;
 const LESS: f64 = 0.1;
@@ -30,10 +37,39 @@ pub fn unheld(qp: &Qp, cones: &Cones, weights: &[f64]) -> Result<(Vec<f64>, Vec<
     let mut g_transposed = qp.g_transposed.clone();
     g_transposed.col.iter().zip(&mut g_transposed.val).for_each(|(&mode, v)| *v *= weights[mode]);
     let e: Vec<f64> = qp.e.iter().zip(weights).map(|(e, w)| w * e).collect();
-    let (qp, cones) = (&Qp { g_transposed: &g_transposed, e: &e, ..*qp }, &cones.wider(1.0 + WIDER));
+    let finite = if cones.are_half_lines() { in_cone(&g_transposed, qp.bounded, &e)? } else { None };
+    let scaled = Qp { g_transposed: &g_transposed, e: &e, ..*qp };
+    let (forces, rest) = finite.map_or_else(|| by_newton(&scaled, &cones.wider(1.0 + WIDER)), Ok)?;
+    Ok((forces, rest.iter().zip(weights).map(|(rest, w)| rest / w).collect()))
+}
+
+/// The forces l for which a is in its cone, and a, orthogonal to rows with a force up to rounding of a; none if rounding
+/// prevents the method from ending.
+fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
+    if e.len() > FEW {
+        return Ok(None);
+    }
+    let m = bounded.len();
+    let mut rows = g_transposed.clone();
+    let free: Vec<usize> = (0..m).filter(|&i| !bounded[i]).collect();
+    free.iter().for_each(|&i| rows.push_row(g_transposed.row(i).map(|(mode, v)| (mode, -v))));
+    let gap = vec![0.0; rows.rows()];
+    let found = nearest_point(Polyhedron { rows: &rows, gap: &gap, target: e, noise: &gap, rounding: 0.0 });
+    let (mut forces, a) = match found {
+        Ok(found) => (found.forces, found.point),
+        Err(error) if error.kind == Kind::Internal => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    let opposite = forces.split_off(m);
+    free.iter().zip(opposite).for_each(|(&i, force)| forces[i] -= force);
+    Ok(Some((forces, a)))
+}
+
+fn by_newton(qp: &Qp, cones: &Cones) -> Result<(Vec<f64>, Vec<f64>)> {
+    let e = qp.e;
     let (motions, y) = (&Motions::of(qp, cones)?, &vec![0.0; qp.b.len()]);
     let target = |delta: f64| Target { qp, cones, motions, y, delta };
-    let is_solved = |now: &Projected| norm(&now.left) <= ACCEPTED * norm(&e);
+    let is_solved = |now: &Projected| norm(&now.left) <= ACCEPTED * norm(e);
     let (mut shift, mut last, mut rest) = (FIRST, target(0.0).at(vec![0.0; e.len()]), vec![0.0; e.len()]);
     let mut before = rest.clone();
     while shift >= LAST {
@@ -56,5 +92,47 @@ pub fn unheld(qp: &Qp, cones: &Cones, weights: &[f64]) -> Result<(Vec<f64>, Vec<
         shift *= LESS;
     }
     target(0.0).settle(&last, &mut rest)?;
-    Ok((last.point, rest.iter().zip(weights).map(|(rest, w)| rest / w).collect()))
+    Ok((last.point, rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Packed;
+
+    /// By the cone, and by Newton's method, with equal results.
+    fn solve(columns: &[[f64; 2]], e: [f64; 2]) -> (Vec<f64>, Vec<f64>) {
+        let mut g_transposed = Csr::empty(2);
+        columns.iter().for_each(|c| g_transposed.push_row([(0, c[0]), (1, c[1])]));
+        let (a, m) = (Packed::zeros(columns.len()).unwrap(), columns.len());
+        let qp = Qp {
+            a: &a,
+            b: &vec![0.0; m],
+            g_transposed: &g_transposed,
+            blocks: &[],
+            rounding: 1e-14,
+            e: &e,
+            bounded: &vec![true; m],
+            preconditioner: None,
+            kept: None,
+        };
+        let cones = Cones::half_lines(qp.bounded).unwrap();
+        let found = unheld(&qp, &cones, &[1.0; 2]).unwrap();
+        let (_, other) = by_newton(&qp, &cones).unwrap();
+        assert!(found.1.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-13), "{other:?}");
+        found
+    }
+
+    #[test]
+    fn a_load_inside_the_cone_of_the_contact_forces_leaves_nothing() {
+        let (forces, rest) = solve(&[[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], [2.0, 1.0]);
+        assert!(norm(&rest) < 1e-14);
+        assert!(forces.iter().all(|l| *l >= 0.0));
+    }
+
+    #[test]
+    fn a_load_outside_the_cone_leaves_the_direction_in_which_it_pulls_away() {
+        let (_, rest) = solve(&[[1.0, 0.0], [1.0, 1.0]], [1.0, -2.0]);
+        assert_eq!(rest, [0.0, -2.0]);
+    }
 }

@@ -4,32 +4,29 @@
 //!
 //! | module | does |
 //! |---|---|
-//! | `balance` | first point if the projection finds none: can `G l = e` be satisfied? |
 //! | `iterate` | point, gradient, face |
 //! | `drift` | when the gradient is recomputed, if products are approximate |
 //! | `steps` | conjugate gradients, expansion, proportioning step |
 //! | `stop` | when the residual is small enough |
 
-mod balance;
 mod drift;
 mod iterate;
 mod steps;
 mod stop;
 
 use crate::error::Result;
-use crate::linalg::vector::{norm, norm_max};
+use crate::linalg::vector::{norm, norm_max, ratio};
 use crate::platform::interrupt;
 use crate::qp::between_solves::BetweenSolves;
 use crate::qp::coarse::Coarse;
+use crate::qp::friction::{unheld, Cones};
 use crate::qp::projection::project;
 use crate::qp::{
     AcceptanceTest, Counts, Limits, Observer, Qp, Rung, Solution, StepKind, StepReport, Verdict,
 };
-use balance::{balance, Balance};
 use iterate::Iterate;
 use steps::Step;
 
-pub use balance::weighted;
 use stop::Stop;
 
 /// If no x balances e, a residual below this part of e is rounding of e.
@@ -57,11 +54,13 @@ pub fn minimise(
         Some(first) => first,
         // S6.2
         None => {
-            let found = interrupt::part(FIRST_POINT, || balance(&qp, &mut coarse))?;
-            if found.margin > ROUNDING {
-                return Ok(infeasible(&qp, &coarse, found));
+            let (cones, alike) = (Cones::half_lines(qp.bounded)?, vec![1.0; qp.e.len()]);
+            let (x, direction) = interrupt::part(FIRST_POINT, || unheld(&qp, &cones, &alike))?;
+            let margin = ratio(norm(&direction), norm(qp.e));
+            if margin > ROUNDING {
+                return Ok(infeasible(x, Verdict::Infeasible { direction, margin }, &coarse));
             }
-            found.point
+            x
         }
     };
     // S6.3
@@ -77,11 +76,10 @@ pub fn minimise(
     proportioning(it, limits, judge, observer)
 }
 
-fn infeasible(qp: &Qp, coarse: &Coarse, found: Balance) -> Solution {
+fn infeasible(x: Vec<f64>, verdict: Verdict, coarse: &Coarse) -> Solution {
     let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
     let counts = Counts { coarse_solves, coarse_factorisations, ..Counts::default() };
-    let verdict = Verdict::Infeasible { direction: found.residual, margin: found.margin };
-    Solution { x: found.point, alpha: vec![0.0; qp.e.len()], undetermined: 0, scale: 0.0, verdict, counts }
+    Solution { x, alpha: vec![0.0; coarse.dimension()], undetermined: 0, scale: 0.0, verdict, counts }
 }
 
 /// S6.1: the feasible point nearest to `start`, on the face of the zeros of `start` (its active set) if this face has

@@ -8,10 +8,11 @@ use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
 use crate::model::Accuracy;
 use crate::platform::memory::zeros;
-use crate::qp::{weighted, Restricted};
+use crate::qp::friction::unheld;
+use crate::qp::Restricted;
 use crate::setup::Ready;
 use crate::solve::case::Case;
-use crate::solve::friction::nearest_forces;
+use crate::solve::friction::cones;
 use crate::solve::scaled::Scaled;
 
 /// Ratio of the smallest to the largest load that is distinguished; a body without load counts as having the smallest.
@@ -72,14 +73,9 @@ impl Unheld {
         let qp = scaled.qp(ready, &ready.dual);
         let is_far = |i: &usize| far.get(*i).copied().unwrap_or(false);
         let rows: Vec<usize> = (0..qp.b.len()).filter(|i| !is_far(i)).collect();
-        let (x, rest) = if case.has_friction() {
-            nearest_forces(ready, qp, &scaled.gaps, &rows, weights)?
-        } else {
-            let near = Restricted::new(qp, &rows);
-            let (x, rest) = weighted(&near.qp(), weights)?;
-            (near.spread(&x), rest)
-        };
-        Ok(Self::of(&case.data()?, ready, scaled, x, &rest))
+        let near = Restricted::new(qp, &rows);
+        let (x, rest) = unheld(&near.qp(), &cones(ready, &scaled.gaps, &rows)?, weights)?;
+        Ok(Self::of(&case.data()?, ready, scaled, near.spread(&x), &rest))
     }
 
     /// For the forces x of the dual, which leave `rest` = e - G x.

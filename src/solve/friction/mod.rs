@@ -8,33 +8,17 @@ mod slides;
 use crate::error::Result;
 use crate::progress::Steps;
 use crate::qp::friction::{
-    friction, unheld, Cones, DualAnswer, FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart,
-    State,
+    friction, Cones, DualAnswer, FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart, State,
 };
 use crate::qp::{AcceptanceTest, AnswerFace, Qp, Restricted, Solution, Verdict};
-use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::fallback::{Found, MethodOptions};
-use crate::solve::friction::laws::{cones, OfBodies};
+use crate::solve::friction::laws::OfBodies;
 use crate::solve::friction::slides::named;
 use crate::solve::gaps::Gaps;
 
 pub use known::on_known_states;
-
-/// The forces within their cones, on some rows, that leave the least of the resultants, each multiplied by its weight; and
-/// `e - G x`.
-pub fn nearest_forces(
-    ready: &Ready,
-    qp: Qp,
-    gaps: &Gaps,
-    rows: &[usize],
-    weights: &[f64],
-) -> Result<(Vec<f64>, Vec<f64>)> {
-    let near = Restricted::new(qp, rows);
-    let cones = cones(ready, gaps, rows)?;
-    let (x, rest) = unheld(&near.qp(), &cones, weights)?;
-    Ok((near.spread(&x), rest))
-}
+pub use laws::cones;
 
 /// The method on a subset of the rows. It reuses the pairs of earlier solves if the start is not 0.
 pub fn solve_with_friction(
@@ -78,8 +62,10 @@ pub fn solve_with_friction(
     });
     let x = near.spread(&found.x);
     // rows without force, and tangential rows of nodes that no friction holds
-    let mut held = qp.at_bound(&x);
-    laws::open_rows(ready, gaps, &x).into_iter().for_each(|row| held[row] = true);
+    let mut held = vec![true; x.len()];
+    rows.iter().for_each(|&row| held[row] = qp.bounded[row] && x[row] <= 0.0);
+    let without = cones.nodes().iter().filter(|node| node.limit(node.of(&found.x).normal) <= 0.0);
+    without.flat_map(|node| node.tangents()).for_each(|&row| held[rows[row]] = true);
     let undetermined = match found.verdict {
         Verdict::Solved => AnswerFace::of(qp, &held)?.undetermined()?.cols,
         _ => 0,
