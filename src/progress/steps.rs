@@ -3,8 +3,7 @@
 use crate::error::Result;
 use crate::progress::listener::Progress;
 use crate::progress::stops::Stops;
-use crate::qp::friction::{FrictionObserver, FrictionReport};
-use crate::qp::{self, Counts, Observer, StepKind};
+use crate::qp::{self, Counts, Observer};
 
 /// A step in one island.
 #[derive(Clone, Copy)]
@@ -68,26 +67,6 @@ impl Steps<'_> {
     fn tell(&mut self, counts: Counts, progress: Progress) -> Result<()> {
         self.voice.step(Told { island: self.island, counts, progress })?;
         self.stops.check()
-    }
-}
-
-impl FrictionObserver for Steps<'_> {
-    fn step(&mut self, now: &FrictionReport) -> Result<()> {
-        let counts = Counts { products: now.products, newton: now.newton, ..Counts::default() };
-        let counts = self.counted(counts);
-        let progress = Progress {
-            step: Some(StepKind::Newton),
-            fraction: f64::NAN,
-            steps: counts.steps(),
-            products: counts.products,
-            active: now.closed,
-            residual: now.merit / now.small,
-            free: f64::NAN,
-            chopped: f64::NAN,
-            theta: f64::NAN,
-            seconds: self.stops.seconds(),
-        };
-        self.tell(counts, progress)
     }
 }
 

@@ -110,11 +110,6 @@ impl<'a> Coarse<'a> {
         Ok(inverse)
     }
 
-    /// `argmin |v_F - G_F'alpha|`, alpha of minimum norm.
-    pub fn multiplier(&mut self, held: &[bool], v: &[f64]) -> Result<Vec<f64>> {
-        Ok(self.fitted(held, v)?.0)
-    }
-
     /// `alpha = argmin |v_F - G_F'alpha|` of minimum norm, and the remainder of v on F, 0 on the rows that are held.
     pub fn fitted(&mut self, held: &[bool], v: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         /// The rounding of `G_F v` is large relative to the part of weakly resisted motions; that of the remainder is
@@ -255,7 +250,7 @@ impl<'a> AnswerFace<'a> {
 
     /// `argmin |r_F - G_F'alpha|` on the rows that are not held, alpha of minimum norm.
     pub fn fitted(&mut self, r: &[f64]) -> Result<Vec<f64>> {
-        self.coarse.multiplier(self.held, r)
+        Ok(self.coarse.fitted(self.held, r)?.0)
     }
 }
 

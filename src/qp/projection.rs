@@ -119,7 +119,7 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         }
         if cuts == PATIENCE && Rung::ProjectionInside.is_tried() {
             (cuts, end) = (cuts + 1, end.min(step + FURTHER_STEPS));
-            let found = inside(qp, coarse, (y, held), (1.0, 0.0), now.beta.clone())?;
+            let found = inside(qp, coarse, (y, held), now.beta.clone())?;
             let next = Trial::new(target, coarse, found.motion);
             if next.phi(qp) < now.phi(qp) {
                 (error, now) = (next.error(qp, coarse), next);

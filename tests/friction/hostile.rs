@@ -3,10 +3,8 @@
 use feti_contact::error::{Error, Kind, Result};
 use feti_contact::linalg::Matrix;
 use feti_contact::platform::threads::with_team;
-use feti_contact::qp::friction::{
-    friction, Cones, FrictionObserver, FrictionReport, FrictionSolution, FrictionStart, Node, State,
-};
-use feti_contact::qp::Verdict;
+use feti_contact::qp::friction::{friction, Cones, FrictionSolution, FrictionStart, Node, State};
+use feti_contact::qp::{Observer, StepReport, Verdict};
 
 use crate::deck::Deck;
 use crate::problem::{Content, Given, Random};
@@ -220,9 +218,9 @@ fn the_bits_do_not_depend_on_threads_and_pairs_kept_save_products() {
 
 struct Impatient(usize);
 
-impl FrictionObserver for Impatient {
-    fn step(&mut self, now: &FrictionReport) -> Result<()> {
-        if now.products >= self.0 {
+impl Observer for Impatient {
+    fn step(&mut self, now: &StepReport) -> Result<()> {
+        if now.counts.products >= self.0 {
             return Err(Error::new(Kind::Cancelled, "enough"));
         }
         Ok(())

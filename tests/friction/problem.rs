@@ -4,10 +4,9 @@ use feti_contact::error::Result;
 use feti_contact::linalg::vector::norm;
 use feti_contact::linalg::{Csr, Matrix};
 use feti_contact::qp::friction::{
-    friction, Cones, FrictionLimits, FrictionObserver, FrictionProblem, FrictionReport, FrictionSolution,
-    FrictionStart, Node,
+    friction, Cones, FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart, Node,
 };
-use feti_contact::qp::{AcceptanceTest, Direct, Qp};
+use feti_contact::qp::{AcceptanceTest, Direct, Observer, Qp, StepReport};
 
 use crate::dense::{Dense, OfMatrices};
 
@@ -43,10 +42,10 @@ impl AcceptanceTest for Content {
     }
 }
 
-impl FrictionObserver for Content {
-    fn step(&mut self, now: &FrictionReport) -> Result<()> {
+impl Observer for Content {
+    fn step(&mut self, now: &StepReport) -> Result<()> {
         if std::env::var("TELL").is_ok() {
-            println!("{now:?}");
+            println!("{:?}: {} of {}", now.counts, now.residual, now.small);
         }
         Ok(())
     }

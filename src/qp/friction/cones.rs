@@ -41,6 +41,15 @@ pub enum Place {
     Rim { along: [f64; 2], ratio: f64 },
 }
 
+impl Place {
+    /// Without the resistance to turns of t, which is of the order of the force.
+    pub fn free_across(&mut self) {
+        if let Self::Surface { ratio, .. } | Self::Rim { ratio, .. } = self {
+            *ratio = 0.0;
+        }
+    }
+}
+
 impl Node {
     pub fn new(normal: Option<usize>, tangents: &[usize], mu: f64, bound: f64) -> Result<Self> {
         let wrong = |what: &str| Err(Error::new(Kind::Argument("nodes"), what));
@@ -174,17 +183,9 @@ impl Cones {
         for row in rows {
             match taken.get_mut(row) {
                 Some(taken) if !*taken => *taken = true,
-                Some(_) => {
-                    return Err(Error::new(
-                        Kind::Argument("nodes"),
-                        format!("row {row} occurs more than once among the nodes"),
-                    ))
-                }
-                None => {
-                    return Err(Error::new(
-                        Kind::Argument("nodes"),
-                        format!("row {row} of a node does not exist"),
-                    ))
+                _ => {
+                    let what = format!("row {row} of a node does not exist, or occurs more than once");
+                    return Err(Error::new(Kind::Argument("nodes"), what));
                 }
             }
         }

@@ -13,6 +13,9 @@ pub enum Law {
     Free { damping: f64, shift: f64 },
 }
 
+/// `w'r = 0`
+pub const EQUATION: Law = Law::Free { damping: 0.0, shift: 0.0 };
+
 /// One vector w of an orthonormal basis of the forces: a single row, or a combination of two tangential rows of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
@@ -58,8 +61,7 @@ impl Coordinate {
 pub fn of_rows(cones: &Cones) -> Vec<Coordinate> {
     let of_nodes =
         cones.nodes().iter().flat_map(|node| node.own_normal().into_iter().chain(node.tangents().to_vec()));
-    let equation = Law::Free { damping: 0.0, shift: 0.0 };
-    of_nodes.chain(cones.free().iter().copied()).map(|row| Coordinate::row(row, equation)).collect()
+    of_nodes.chain(cones.free().iter().copied()).map(|row| Coordinate::row(row, EQUATION)).collect()
 }
 
 /// Rows of G' of every coordinate, with a pattern common to all faces: a normal coordinate has the columns of all nodes with this

@@ -47,14 +47,9 @@ impl Dense {
         Ok(Self { f })
     }
 
-    pub fn step(&self, problem: &FrictionProblem, face: &Face, now: &Point) -> Result<Step> {
-        self.solved(problem, face, now).map(|(step, _)| step)
-    }
-
     /// dx with its image, and da, from a point of the method.
     pub fn solved(&self, problem: &FrictionProblem, face: &Face, now: &Point) -> Result<(Step, Vec<f64>)> {
-        let mut left = problem.qp.e.to_vec();
-        problem.qp.g_transposed.mul_transposed_add(-1.0, &now.x, &mut left);
+        let left = problem.qp.left(&now.x);
         let residual = face.residual(&now.x, &now.r);
         let (dx, turn) = self.newton(problem, face, &residual, (&left, &[]))?;
         let mut dg = vec![0.0; dx.len()];

@@ -6,10 +6,8 @@ use crate::qp::friction::cones::Cones;
 use crate::qp::friction::face::Face;
 use crate::qp::friction::nearest::Projected;
 use crate::qp::friction::newton::{Point, Run, RHO};
-use crate::qp::friction::{
-    FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
-};
-use crate::qp::{AcceptanceTest, Counts, Mended, Rung, Solution, Verdict};
+use crate::qp::friction::{FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart};
+use crate::qp::{AcceptanceTest, Counts, Mended, Observer, Rung, Solution, Verdict};
 
 /// Below this merit the answer may be as accurate as rounding allows.
 const NEAR: f64 = 1e-7;
@@ -25,7 +23,7 @@ pub fn friction(
     limits: FrictionLimits,
     start: FrictionStart,
     judge: &mut dyn AcceptanceTest,
-    observer: &mut dyn FrictionObserver,
+    observer: &mut dyn Observer,
 ) -> Result<FrictionSolution> {
     let alpha = start.alpha.map_or_else(|| vec![0.0; problem.qp.e.len()], <[f64]>::to_vec);
     let (mut run, first) = Run::new(problem, limits, start, observer)?;
@@ -48,7 +46,7 @@ pub fn known_face(
     problem: FrictionProblem,
     limits: FrictionLimits,
     (x, alpha): (&[f64], &[f64]),
-    observer: &mut dyn FrictionObserver,
+    observer: &mut dyn Observer,
 ) -> Result<usize> {
     let (mut run, first) = Run::new(problem, limits, FrictionStart::default(), observer)?;
     let g = run.gradient(x)?;

@@ -3,8 +3,8 @@
 
 use crate::error::Result;
 use crate::qp::friction::cones::{direction, length, Cones, Node};
-use crate::qp::friction::coordinates::{Coordinate, Law};
-use crate::qp::friction::motions::{Motions, Turned};
+use crate::qp::friction::coordinates::{Coordinate, Law, EQUATION};
+use crate::qp::friction::motions::{Motions, Turned, CUT};
 
 /// A bound is zero if it is below this part of the largest force.
 const NOTHING: f64 = 1e-14;
@@ -140,12 +140,9 @@ impl Face {
     }
 }
 
-const EQUATION: Law = Law::Free { damping: 0.0, shift: 0.0 };
-
 /// A face with its coarse spaces.
 pub struct Model {
     pub face: Face,
-    weights: Vec<f64>,
     /// `(A w^2 A')^+` for A = G W and for A = G Z.
     plain: Turned,
     through: Turned,
@@ -154,9 +151,9 @@ pub struct Model {
 impl Model {
     pub fn new(face: Face, motions: &mut Motions) -> Result<Self> {
         let weights = face.weights();
-        let plain = motions.on(&face.coordinates, weights.clone(), false)?;
-        let through = motions.on(&face.coordinates, weights.clone(), true)?;
-        Ok(Self { face, weights, plain, through })
+        let plain = motions.inverse(&face.coordinates, weights.clone(), (false, CUT))?;
+        let through = motions.inverse(&face.coordinates, weights, (true, CUT))?;
+        Ok(Self { face, plain, through })
     }
 
     /// `da = (A w^2 A')^+ A w^2 q` of a residual, r entries.
@@ -167,7 +164,7 @@ impl Model {
     /// Subtracts `A'da` from the free coordinates of a residual.
     pub fn turned(&self, residual: &mut [f64]) -> Result<()> {
         let turn = self.turn(residual)?;
-        for (k, q) in residual.iter_mut().enumerate().filter(|(k, _)| self.weights[*k] != 0.0) {
+        for (k, q) in residual.iter_mut().enumerate().filter(|(k, _)| self.plain.weights[*k] != 0.0) {
             *q -= self.plain.row_dot(k, &turn);
         }
         Ok(())
@@ -176,8 +173,8 @@ impl Model {
     /// `[first; P w q]`: the part of a residual that no a can remove, all entries as lengths.
     pub fn reduced(&self, mut residual: Vec<f64>) -> Result<Vec<f64>> {
         self.turned(&mut residual)?;
-        for (k, q) in residual.iter_mut().enumerate().filter(|(k, _)| self.weights[*k] != 0.0) {
-            *q *= self.weights[k];
+        for (k, q) in residual.iter_mut().enumerate().filter(|(k, _)| self.plain.weights[*k] != 0.0) {
+            *q *= self.plain.weights[k];
         }
         Ok(residual)
     }

@@ -60,6 +60,12 @@ pub trait OnFace {
     fn apply(&self, q: &[f64], z: &mut [f64]) -> Result<()>;
 }
 
+impl<F: Fn(&[f64], &mut [f64]) -> Result<()>> OnFace for F {
+    fn apply(&self, q: &[f64], z: &mut [f64]) -> Result<()> {
+        self(q, z)
+    }
+}
+
 /// Limits, and alternatives that may be tried.
 #[derive(Clone, Copy)]
 pub struct FrictionLimits<'a> {
@@ -77,25 +83,6 @@ pub struct FrictionStart<'a> {
     pub x: Option<&'a [f64]>,
     pub alpha: Option<&'a [f64]>,
     pub pairs: Pairs,
-}
-
-/// Receives the state after every product; an error ends the method, with the point reached if the error is `Cancelled`
-/// or `TimeOver`.
-pub trait FrictionObserver {
-    fn step(&mut self, now: &FrictionReport) -> Result<()>;
-}
-
-/// The state of the method.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrictionReport {
-    pub products: usize,
-    pub newton: usize,
-    /// Violation of the laws, and the value below which it counts as zero: lengths.
-    pub merit: f64,
-    pub small: f64,
-    pub closed: usize,
-    pub sticking: usize,
-    pub slipping: usize,
 }
 
 /// A steady slide: the forces at their bounds hold only a part of the load.

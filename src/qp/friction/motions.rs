@@ -12,7 +12,7 @@ use crate::qp::Qp;
 
 /// Motions that weighted rows resist by less than this part of |G| are free: for `A w^2 A'` the limit is its square,
 /// 1e-11.
-const CUT: f64 = 3e-6;
+pub const CUT: f64 = 3e-6;
 
 /// Data common to all faces of one G.
 pub struct Motions<'a> {
@@ -29,7 +29,7 @@ pub struct Motions<'a> {
 pub struct Turned {
     /// m x r
     rows: Csr,
-    weights: Vec<f64>,
+    pub weights: Vec<f64>,
     inverse: CoarseInverse,
 }
 
@@ -44,38 +44,17 @@ impl<'a> Motions<'a> {
         Ok(Self { g_transposed, blocks, rounding, pattern, space, nothing_held })
     }
 
-    /// `(G G')^+` over all rows, for any coordinates.
-    pub fn of_all_rows(&mut self, coordinates: &[Coordinate]) -> Result<Turned> {
-        self.inverse(self.in_coordinates(coordinates, false), vec![1.0; coordinates.len()], self.rounding)
-    }
-
-    /// For A = G W, or, if `through`, for A = G Z, in which normal coordinates also move those along the slip that follow
-    /// them.
-    pub fn on(&mut self, coordinates: &[Coordinate], weights: Vec<f64>, through: bool) -> Result<Turned> {
-        self.inverse(self.in_coordinates(coordinates, through), weights, CUT.max(self.rounding))
-    }
-
-    /// `A w^2 A' + shift max diag(G G') I` for A = G Z; none without modes, or if it is not positive definite.
-    pub fn shifted(
-        &self,
+    /// `(A w^2 A')^+` for A = G W, or, if `through`, for A = G Z, in which normal coordinates also move those along the slip that follow
+    /// them. Motions a are free if `|w A'a| <= cut |G| |a|`, but not below the rounding of G.
+    pub fn inverse(
+        &mut self,
         coordinates: &[Coordinate],
         weights: Vec<f64>,
-        shift: f64,
-    ) -> Result<Option<Turned>> {
-        let rows = self.in_coordinates(coordinates, true);
-        let shift = shift * norm_max(&self.space.whole);
-        let inverse = self.space.weighted(&rows, |i| weights[i] * weights[i], |_| shift)?;
-        Ok(inverse.map(|inverse| Turned { rows, weights, inverse }))
-    }
-
-    /// The largest diagonal entry of `G G'`.
-    pub fn size(&self) -> f64 {
-        self.space.largest()
-    }
-
-    fn inverse(&mut self, rows: Csr, weights: Vec<f64>, rounding: f64) -> Result<Turned> {
+        (through, cut): (bool, f64),
+    ) -> Result<Turned> {
         interrupt::check()?;
         tally::costly();
+        let (rows, cut) = (self.in_coordinates(coordinates, through), cut.max(self.rounding));
         let entries = rows.val.len() * (size_of::<f64>() + size_of::<usize>());
         let both = 2 * (entries + rows.ptr.len() * size_of::<usize>());
         let _room = headroom_with(both, SMALL_MATRICES, "the coarse space of a face")?;
@@ -83,13 +62,30 @@ impl<'a> Motions<'a> {
         for (i, weight) in weights.iter().enumerate() {
             weighted.val[rows.ptr[i]..rows.ptr[i + 1]].iter_mut().for_each(|v| *v *= weight);
         }
-        let inverse = match self.space.inverse(&weighted, &self.nothing_held, rounding)? {
+        let inverse = match self.space.inverse(&weighted, &self.nothing_held, cut)? {
             Some(inverse) => inverse,
-            None => self.space.inverse_by_blocks(&weighted, self.blocks, &self.nothing_held, rounding)?,
+            None => self.space.inverse_by_blocks(&weighted, self.blocks, &self.nothing_held, cut)?,
         };
         // the blocks are those of these rows
         self.space.by_blocks = None;
         Ok(Turned { rows, weights, inverse })
+    }
+
+    /// `A w^2 A' + shift max diag(G G') I` for A = G Z; none without modes, or if it is not positive definite.
+    pub fn shifted(
+        &self,
+        coordinates: &[Coordinate],
+        weights: &[f64],
+        shift: f64,
+    ) -> Result<Option<CoarseInverse>> {
+        let rows = self.in_coordinates(coordinates, true);
+        let shift = shift * norm_max(&self.space.whole);
+        self.space.weighted(&rows, |i| weights[i] * weights[i], |_| shift)
+    }
+
+    /// The largest diagonal entry of `G G'`.
+    pub fn size(&self) -> f64 {
+        self.space.largest()
     }
 
     /// `W'G'` or `Z'G'`, m x r.

@@ -45,7 +45,7 @@ pub struct Target<'a> {
 pub struct Projected {
     pub beta: Vec<f64>,
     pub point: Vec<f64>,
-    places: Vec<Place>,
+    pub places: Vec<Place>,
     /// `e - G point - delta beta`
     pub left: Vec<f64>,
     phi: f64,
@@ -91,20 +91,8 @@ impl Target<'_> {
     fn direction(&self, now: &Projected, shift: f64) -> Result<Option<Vec<f64>>> {
         let shift = if self.delta > 0.0 { self.delta / self.motions.size() } else { shift };
         let (coordinates, weights) = derivative(self.cones, &now.places);
-        let matrix = self.motions.shifted(&coordinates, weights, shift)?;
+        let matrix = self.motions.shifted(&coordinates, &weights, shift)?;
         matrix.map(|matrix| matrix.solve(&now.left)).transpose()
-    }
-
-    /// Removes from a motion the part that the rows with a force at this point resist.
-    pub fn settle(&self, at: &Projected, motion: &mut [f64]) -> Result<()> {
-        /// The second pass removes the rounding of the first.
-        const PASSES: usize = 2;
-        let (coordinates, weights) = derivative(self.cones, &at.places);
-        let Some(matrix) = self.motions.shifted(&coordinates, weights, ROUNDING)? else { return Ok(()) };
-        for _ in 0..PASSES {
-            axpy(-1.0, &matrix.solve(&matrix.resistance(motion))?, motion);
-        }
-        Ok(())
     }
 
     pub fn at(&self, beta: Vec<f64>) -> Projected {

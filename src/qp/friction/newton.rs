@@ -4,11 +4,11 @@
 use crate::error::Result;
 use crate::linalg::vector::{dot, norm};
 use crate::platform::{interrupt, tally};
-use crate::qp::friction::face::{Face, Model, State};
+use crate::qp::friction::face::{Face, Model};
 use crate::qp::friction::motions::{Motions, Turned};
 use crate::qp::friction::pairs::{Pair, Pairs, Step};
-use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Slide};
-use crate::qp::{Counts, Rung};
+use crate::qp::friction::{FrictionProblem, OnFace, Slide};
+use crate::qp::{Counts, Observer, Rung, StepKind, StepReport};
 
 /// rho, by which forces and lengths are compared, no unit: rows have the compliance `b K_d^-1 b' + C = 1`.
 pub const RHO: f64 = 0.2;
@@ -55,7 +55,7 @@ pub struct Run<'a, 'w> {
     pub last: Point,
     /// A slide that weak supports have shown.
     pub slide: Option<Slide>,
-    pub observer: &'w mut dyn FrictionObserver,
+    pub observer: &'w mut dyn Observer,
 }
 
 impl Run<'_, '_> {
@@ -220,17 +220,18 @@ impl Run<'_, '_> {
         let unbalanced = self.imbalance(&v, &none)?.sqrt();
         let image = self.product(&v)?;
         self.pairs.keep(Pair { v, image, unbalanced });
-        let of = |state: State| model.face.states.iter().filter(|own| **own == state).count();
-        let report = FrictionReport {
-            products: self.counts.products,
-            newton: self.counts.newton,
-            merit: now.merit,
+        let nodes = self.problem.cones.nodes().iter().zip(&model.face.closed);
+        let open: Vec<bool> = nodes.filter_map(|(node, closed)| node.own_normal().map(|_| !closed)).collect();
+        self.observer.step(&StepReport {
+            kind: StepKind::Newton,
+            counts: &self.counts,
+            active: &open,
+            theta: f64::NAN,
+            residual: now.merit,
+            free: f64::NAN,
+            chopped: f64::NAN,
             small: self.small,
-            closed: model.face.closed.iter().filter(|closed| **closed).count(),
-            sticking: of(State::Stick),
-            slipping: of(State::Slip),
-        };
-        self.observer.step(&report)?;
+        })?;
         Ok(true)
     }
 

@@ -2,7 +2,6 @@
 //! `make rungs` counts what each saves.
 
 use crate::error::{Kind, Result};
-use crate::qp::friction::coordinates::Law;
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
 use crate::qp::friction::newton::{Point, Run, RHO};
@@ -73,18 +72,14 @@ impl Run<'_, '_> {
     /// From the answer for which all nodes that are closed at the start stick.
     fn sticking(&mut self, start: &Point) -> Result<Option<Point>> {
         self.counts.starts += 1;
-        let mut face = Face::at(self.problem.cones, &start.x, &start.r, RHO);
-        let sticks = Law::Free { damping: 0.0, shift: 0.0 };
-        let mut k = 0;
+        let at = Face::at(self.problem.cones, &start.x, &start.r, RHO);
+        let mut face = Face::empty(self.problem.cones, RHO);
         for (i, node) in self.problem.cones.nodes().iter().enumerate() {
-            k += usize::from(node.own_normal().is_some());
-            let carries = face.closed[i] || face.states[i] != State::Open;
-            for at in &mut face.coordinates[k..k + node.tangents().len()] {
-                at.coupling = None;
-                at.law = if carries { sticks } else { Law::Held { value: 0.0 } };
-            }
-            k += node.tangents().len();
+            let carries = at.closed[i] || at.states[i] != State::Open;
+            let state = if carries { State::Stick } else { State::Open };
+            face.push_node(node, at.closed[i], state, ([1.0, 0.0], 0.0));
         }
+        face.finish(self.problem.cones);
         let model = self.model(face)?;
         let step = self.enough(&model, start, (LEFT, DIRECTIONS))?;
         let (x, g) = step.from(&start.x, &start.g, 1.0);

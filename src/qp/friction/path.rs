@@ -63,7 +63,7 @@ impl Run<'_, '_> {
                 Solves::Pairs { .. } => self.enough(&model, &now, (LEFT, DIRECTIONS))?,
                 Solves::Dense(dense) => {
                     self.counts.direct += 1;
-                    dense.step(&self.problem, &model.face, &now)?
+                    dense.solved(&self.problem, &model.face, &now)?.0
                 }
             };
             self.counts.newton += 1;

@@ -1,14 +1,14 @@
 //! The start of the method: x within the cones, a that fits its face, the length to which gaps are relative.
 
 use crate::error::Result;
-use crate::linalg::vector::{dot, norm};
+use crate::linalg::vector::norm;
 use crate::qp::friction::coordinates::of_rows;
 use crate::qp::friction::face::Face;
 use crate::qp::friction::motions::Motions;
 use crate::qp::friction::nearest::{Projected, Target};
 use crate::qp::friction::newton::{Point, Run, RHO};
-use crate::qp::friction::{FrictionLimits, FrictionObserver, FrictionProblem, FrictionStart};
-use crate::qp::Counts;
+use crate::qp::friction::{FrictionLimits, FrictionProblem, FrictionStart};
+use crate::qp::{Counts, Observer};
 
 /// `|P d|` is zero if it is below this part of `|d|`.
 const NOTHING: f64 = 1e-14;
@@ -19,10 +19,11 @@ impl<'a, 'w> Run<'a, 'w> {
         problem: FrictionProblem<'a>,
         limits: FrictionLimits,
         start: FrictionStart,
-        observer: &'w mut dyn FrictionObserver,
+        observer: &'w mut dyn Observer,
     ) -> Result<(Self, Projected)> {
         let mut motions = Motions::of(&problem.qp, problem.cones)?;
-        let all_rows = motions.of_all_rows(&of_rows(problem.cones))?;
+        let all_rows =
+            motions.inverse(&of_rows(problem.cones), vec![1.0; problem.qp.b.len()], (false, 0.0))?;
         let y = start.x.map_or_else(|| vec![0.0; problem.qp.b.len()], <[f64]>::to_vec);
         let run = Self {
             pairs: start.pairs.of_order(y.len()),
@@ -79,16 +80,16 @@ impl<'a, 'w> Run<'a, 'w> {
 
     /// N, `|P d|`, or `|P (F x - d)|` if that is 0.
     fn size_of_gaps(&mut self, g: &[f64]) -> Result<f64> {
-        let mut d = self.problem.qp.b.to_vec();
-        let whole = norm(&d);
-        self.without_motions(&mut d)?;
-        if dot(&d, &d).sqrt() > NOTHING * whole {
-            return Ok(norm(&d));
+        let mut whole = 0.0f64;
+        for v in [self.problem.qp.b, g] {
+            let mut v = v.to_vec();
+            whole = whole.max(norm(&v));
+            self.without_motions(&mut v)?;
+            if norm(&v) > NOTHING * whole {
+                return Ok(norm(&v));
+            }
         }
-        let mut g = g.to_vec();
-        let whole = whole.max(norm(&g));
-        self.without_motions(&mut g)?;
-        Ok(if norm(&g) > NOTHING * whole { norm(&g) } else { 0.0 })
+        Ok(0.0)
     }
 
     /// The start point with x and g; a in two passes, `a += da` with the face of (x, 0), then with that of (x, r).

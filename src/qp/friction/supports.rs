@@ -15,14 +15,6 @@ pub struct Supported<'a> {
     b: Vec<f64>,
     g_transposed: Csr,
     cones: Cones,
-    preconditioner: Option<OfRows<'a>>,
-}
-
-/// M for the rows, and kappa for the supports.
-struct OfRows<'a> {
-    rows: &'a dyn FacePreconditioner,
-    kappa: f64,
-    count: usize,
 }
 
 impl<'a> Supported<'a> {
@@ -33,16 +25,14 @@ impl<'a> Supported<'a> {
         let mut g_transposed = of.qp.g_transposed.clone();
         (0..of.qp.e.len()).for_each(|k| g_transposed.push_row([(k, 1.0)]));
         let cones = Cones::new(b.len(), of.cones.nodes().to_vec())?;
-        let of_rows = |rows| OfRows { rows, kappa, count: of.qp.b.len() };
-        let preconditioner = of.preconditioner.map(of_rows);
-        Ok(Self { of, kappa, b, g_transposed, cones, preconditioner })
+        Ok(Self { of, kappa, b, g_transposed, cones })
     }
 
     pub fn problem(&self) -> FrictionProblem<'_> {
         FrictionProblem {
             qp: Qp { a: self, b: &self.b, g_transposed: &self.g_transposed, ..self.of.qp },
             cones: &self.cones,
-            preconditioner: self.preconditioner.as_ref().map(|of_rows| of_rows as &dyn FacePreconditioner),
+            preconditioner: self.of.preconditioner.map(|_| self as &dyn FacePreconditioner),
         }
     }
 
@@ -73,31 +63,21 @@ impl Operator for Supported<'_> {
     }
 }
 
-/// M of one face.
-struct OnSupported<'a> {
-    rows: Box<dyn OnFace + 'a>,
-    kappa: f64,
-    count: usize,
-}
-
-impl FacePreconditioner for OfRows<'_> {
+/// M for the rows, and kappa for the supports.
+impl FacePreconditioner for Supported<'_> {
     fn on<'b>(&'b self, face: &Face) -> Result<Box<dyn OnFace + 'b>> {
-        let &Self { rows, kappa, count } = self;
+        let (count, kappa) = (self.of.qp.b.len(), self.kappa);
         let own = Face {
             coordinates: copied(&face.coordinates[..count], "a face")?,
             states: copied(&face.states, "a face")?,
             closed: copied(&face.closed, "a face")?,
             rho: face.rho,
         };
-        Ok(Box::new(OnSupported { rows: rows.on(&own)?, kappa, count }))
-    }
-}
-
-impl OnFace for OnSupported<'_> {
-    fn apply(&self, q: &[f64], z: &mut [f64]) -> Result<()> {
-        let (rows, supports) = z.split_at_mut(self.count);
-        self.rows.apply(&q[..self.count], rows)?;
-        supports.iter_mut().zip(&q[self.count..]).for_each(|(z, q)| *z = self.kappa * q);
-        Ok(())
+        let of_rows = self.of.preconditioner.map(|of_rows| of_rows.on(&own)).transpose()?;
+        Ok(Box::new(move |q: &[f64], z: &mut [f64]| {
+            let (rows, supports) = z.split_at_mut(count);
+            supports.iter_mut().zip(&q[count..]).for_each(|(z, q)| *z = kappa * q);
+            of_rows.as_ref().map_or(Ok(()), |of_rows| of_rows.apply(&q[..count], rows))
+        }))
     }
 }

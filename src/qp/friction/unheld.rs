@@ -14,11 +14,11 @@
 //! remaining effect of delta is subtracted from the motion.
 
 use crate::error::{Kind, Result};
-use crate::linalg::vector::norm;
+use crate::linalg::vector::{axpy, norm};
 use crate::linalg::Csr;
-use crate::qp::friction::cones::Cones;
-use crate::qp::friction::motions::Motions;
-use crate::qp::friction::nearest::{Projected, Target};
+use crate::qp::friction::cones::{Cones, Place};
+use crate::qp::friction::motions::{Motions, CUT};
+use crate::qp::friction::nearest::{derivative, Projected, Target};
 use crate::qp::{nearest_point, Polyhedron, Qp};
 
 /// Limit of modes for which a square matrix over the modes, and one rotation of it per row and mode, are inexpensive.
@@ -29,6 +29,9 @@ const LESS: f64 = 0.1;
 const LAST: f64 = 1e-13;
 /// Relative increase of the coefficients.
 const WIDER: f64 = 1e-6;
+/// Rounds in which nodes join those that resist the remainder; the second pass of a round removes the rounding of the first.
+const ROUNDS: usize = 10;
+const PASSES: usize = 2;
 /// Residual of an accepted solution, relative to |e|.
 const ACCEPTED: f64 = 1e-5;
 
@@ -66,18 +69,16 @@ fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Ve
 }
 
 fn by_newton(qp: &Qp, cones: &Cones) -> Result<(Vec<f64>, Vec<f64>)> {
-    let e = qp.e;
-    let (motions, y) = (&Motions::of(qp, cones)?, &vec![0.0; qp.b.len()]);
-    let target = |delta: f64| Target { qp, cones, motions, y, delta };
-    let is_solved = |now: &Projected| norm(&now.left) <= ACCEPTED * norm(e);
-    let (mut shift, mut last, mut rest) = (FIRST, target(0.0).at(vec![0.0; e.len()]), vec![0.0; e.len()]);
+    let (mut motions, y) = (Motions::of(qp, cones)?, &vec![0.0; qp.b.len()]);
+    let is_solved = |now: &Projected| norm(&now.left) <= ACCEPTED * norm(qp.e);
+    let (mut shift, mut last, mut rest) = (FIRST, None, qp.e.to_vec());
     let mut before = rest.clone();
     while shift >= LAST {
         let delta = shift * motions.size();
         // while the states of the nodes do not change, the remainder is a linear function of delta
         let from = |by: f64| {
             let beta = rest.iter().zip(&before).map(|(rest, before)| (rest + by * (rest - before)) / delta);
-            target(delta).projected(beta.collect())
+            Target { qp, cones, motions: &motions, y, delta }.projected(beta.collect())
         };
         let mut now = from(LESS)?;
         if !is_solved(&now) {
@@ -88,11 +89,45 @@ fn by_newton(qp: &Qp, cones: &Cones) -> Result<(Vec<f64>, Vec<f64>)> {
         }
         let next: Vec<f64> = now.beta.iter().map(|beta| delta * beta).collect();
         before = if shift < FIRST { rest } else { next.clone() };
-        (last, rest) = (now, next);
+        (last, rest) = (Some((now, delta)), next);
         shift *= LESS;
     }
-    target(0.0).settle(&last, &mut rest)?;
-    Ok((last.point, rest))
+    let Some((Projected { point, places, .. }, delta)) = last else { return Ok((y.clone(), rest)) };
+    settle(qp, cones, (&mut motions, delta), places, &mut rest)?;
+    Ok((point, rest))
+}
+
+/// Removes from the remainder what nodes with a force in these places resist: delta times their forces. Nodes that then resist it join
+/// them.
+fn settle(
+    qp: &Qp,
+    cones: &Cones,
+    (motions, delta): (&mut Motions, f64),
+    mut places: Vec<Place>,
+    rest: &mut [f64],
+) -> Result<()> {
+    // slips are known to a part of this size
+    let cut = if cones.are_half_lines() { 0.0 } else { CUT };
+    for _ in 0..ROUNDS {
+        places.iter_mut().for_each(Place::free_across);
+        let (coordinates, weights) = derivative(cones, &places);
+        let resisted = motions.inverse(&coordinates, weights, (true, cut))?;
+        for _ in 0..PASSES {
+            axpy(-1.0, &resisted.solve(&resisted.resistance(rest))?, rest);
+        }
+        let v: Vec<f64> = (0..qp.b.len()).map(|i| qp.g_transposed.row_dot(i, rest) / delta).collect();
+        let mut joined = false;
+        for (place, now) in places.iter_mut().zip(cones.nearest(&v).1) {
+            let joins = matches!(place, Place::Open | Place::Rim { .. })
+                && matches!(now, Place::Inside | Place::Surface { .. });
+            *place = if joins { now } else { *place };
+            joined |= joins;
+        }
+        if !joined {
+            break;
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use crate::error::Result;
 use crate::model::Settings;
-use crate::qp::friction::{known_face, FrictionLimits, FrictionObserver, FrictionProblem, FrictionReport};
-use crate::qp::{Qp, Restricted};
+use crate::qp::friction::{known_face, FrictionLimits, FrictionProblem};
+use crate::qp::{Observer, Qp, Restricted, StepReport};
 use crate::setup::Ready;
 use crate::solve::friction::laws::{cones, OfBodies};
 use crate::solve::gaps::Gaps;
@@ -25,8 +25,8 @@ pub fn on_known_states(ready: &Ready, settings: &Settings, qp: Qp, gaps: &Gaps) 
 /// Does not report products and never stops them.
 struct Silent;
 
-impl FrictionObserver for Silent {
-    fn step(&mut self, _: &FrictionReport) -> Result<()> {
+impl Observer for Silent {
+    fn step(&mut self, _: &StepReport) -> Result<()> {
         Ok(())
     }
 }

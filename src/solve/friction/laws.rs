@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::dual::{Preconditioner, TurnedFace, TurnedRow};
+use crate::dual::{Preconditioner, TurnedRow};
 use crate::error::Result;
 use crate::platform::memory::filled;
 use crate::qp::friction::{Cones, Face, FacePreconditioner, Law, Node, OnFace};
@@ -50,11 +50,6 @@ pub struct OfBodies<'a> {
 }
 
 /// M of one face, on its free coordinates.
-struct OnFree<'a> {
-    free: Vec<usize>,
-    face: TurnedFace<'a>,
-}
-
 impl FacePreconditioner for OfBodies<'_> {
     fn on<'a>(&'a self, face: &Face) -> Result<Box<dyn OnFace + 'a>> {
         let (mut free, mut rows) = (Vec::new(), Vec::new());
@@ -64,17 +59,14 @@ impl FacePreconditioner for OfBodies<'_> {
                 rows.push(TurnedRow { rows: at.rows.map(|row| self.rows[row]), along: at.along, damping });
             }
         }
-        Ok(Box::new(OnFree { free, face: self.of.turned(&rows)? }))
-    }
-}
-
-impl OnFace for OnFree<'_> {
-    fn apply(&self, q: &[f64], z: &mut [f64]) -> Result<()> {
-        let own: Vec<f64> = self.free.iter().map(|&k| q[k]).collect();
-        let mut image = vec![0.0; own.len()];
-        self.face.apply(&own, &mut image)?;
-        z.fill(0.0);
-        self.free.iter().zip(image).for_each(|(&k, v)| z[k] = v);
-        Ok(())
+        let of_face = self.of.turned(&rows)?;
+        Ok(Box::new(move |q: &[f64], z: &mut [f64]| {
+            let own: Vec<f64> = free.iter().map(|&k| q[k]).collect();
+            let mut image = vec![0.0; own.len()];
+            of_face.apply(&own, &mut image)?;
+            z.fill(0.0);
+            free.iter().zip(image).for_each(|(&k, v)| z[k] = v);
+            Ok(())
+        }))
     }
 }
