@@ -22,10 +22,10 @@ use crate::qp::friction::nearest::{derivative, Projected, Target};
 use crate::qp::{nearest_point, Polyhedron, Qp};
 
 /// Limit of modes for which a square matrix over the modes, and one rotation of it per row and mode, are inexpensive.
-const FEW: usize = 1500;
+const FEW: usize = 500;
 /// delta relative to the largest diagonal entry of `G G'`: the first value, the factor, and the last value.
 const FIRST: f64 = 1.0;
-const LESS: f64 = 0.1;
+const LESS: f64 = 0.01;
 const LAST: f64 = 1e-13;
 /// Relative increase of the coefficients.
 const WIDER: f64 = 1e-6;
