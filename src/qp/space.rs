@@ -161,8 +161,7 @@ impl CoarseInverse {
         Some(basis)
     }
 
-    /// Some motions are resisted so weakly that rounding of `G_F v` matters in `W_F+ G_F v`.
-    /// Some motion is resisted weakly: see `WEAK`.
+    /// Some motion is resisted so weakly (`WEAK`) that rounding of `G_F v` matters in `W_F+ G_F v`.
     pub fn is_weak(&self) -> bool {
         match &self.solver {
             Solver::Nothing => false,
