@@ -206,10 +206,13 @@ fn attempt(
         && is_to_finish(settings, recovery, &ending)
         && finish(recovery, &mut ending, false)?.replaced;
     let slide = if finished { interrupt::never(|| recovery.slides(&ending))? } else { slides }.worst();
-    let mut outcome = outcome(case, dual, &ending.solution)?;
-    if outcome == Outcome::Solved && !ending.judgement.certificate.passed() {
-        outcome = Outcome::Inaccurate;
-    }
+    let passed = ending.judgement.certificate.passed();
+    let mut outcome = match outcome(case, dual, &ending.solution)? {
+        Outcome::Solved if !passed => Outcome::Inaccurate,
+        // beside negative stiffness an equilibrium may be no minimum
+        Outcome::Stalled | Outcome::Inaccurate if passed && ready.dual.negative.is_empty() => Outcome::Solved,
+        outcome => outcome,
+    };
     if outcome == Outcome::Solved && slide.is_some() {
         outcome = Outcome::Marginal;
     }
