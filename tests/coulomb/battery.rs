@@ -253,6 +253,13 @@ fn rows_far_off_do_not_blur_what_is_near() {
     }
 }
 
+/// The answer was once given back as that of a method that had stalled, though its ratio was .04.
+#[test]
+fn an_answer_that_passes_is_solved_however_its_method_ended() {
+    let (end, text) = ended(&case(7003229, &SIZES));
+    assert!(end == End::Solved, "{text}");
+}
+
 /// One problem in full: BATTERY_SEED, BATTERY_MIXTURE.
 #[test]
 #[ignore]
