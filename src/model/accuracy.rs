@@ -26,7 +26,7 @@ const CHAIN: usize = 8;
 const SAMPLE: usize = 256;
 
 /// What counts as rounding of the host's normals, weights and coordinates.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Accuracy {
     /// Relative to their terms: a motion that each row resists by less than this part of its terms is undetermined, and a
     /// part of the load along it up to this share of the load is rounding.

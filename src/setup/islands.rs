@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
-use crate::model::{Accuracy, Lengths, Model};
+use crate::model::{Lengths, Model};
 use crate::platform::memory::{copied, headroom, reserved, zeros};
 
 const WHAT: &str = "groups of bodies";
@@ -26,8 +26,6 @@ pub struct Island {
     pub friction: Nodes,
     /// 2^p, p = floor(log2 max K_ii), force / length: forces are divided by it.
     pub unit: f64,
-    /// The accuracy of the host's data.
-    pub accuracy: Accuracy,
 }
 
 /// Rows of one kind in an island.
@@ -164,7 +162,6 @@ impl Island {
                 *taken = if *c == rows.rhs[i] { 0.0 } else { rows.rhs[i].abs() };
             }
         }
-        self.accuracy = Accuracy { data: model.settings.data_accuracy };
         for (own, &number) in self.friction.nodes.iter_mut().zip(&self.friction.numbers) {
             let (coefficient, bound) = law(model, number);
             *own = FrictionNode { coefficient, bound, ..*own };
@@ -321,7 +318,6 @@ impl Island {
             equalities,
             friction,
             unit: 1.0,
-            accuracy: Accuracy::default(),
         }
     }
 }

@@ -116,8 +116,8 @@ impl DualRows {
         }
         for (i, (group, _)) in members() {
             let (given, level) = (rows.rhs[i], tightest[group] / scale[i]);
-            let slack = lengths.rounding(RowKind::Inequality, numbers[i]).max(NOISE * given.abs());
-            if scale[i] * given != tightest[group] && given - level <= slack {
+            let slack = || lengths.rounding(RowKind::Inequality, numbers[i]).max(NOISE * given.abs());
+            if scale[i] * given != tightest[group] && given - level <= slack() {
                 rows.rhs[i] = level;
                 rows.rounding[i] += (given - level).abs();
             }

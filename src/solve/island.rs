@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::error::{Error, Result};
 use crate::linalg::vector::norm_max;
 use crate::linalg::{Csr, Operator};
-use crate::model::Model;
+use crate::model::{Accuracy, Model};
 use crate::platform::{interrupt, threads};
 use crate::progress::{Steps, Stops, Voice};
 use crate::qp::paper::Units;
@@ -186,7 +186,7 @@ fn attempt(
     let recovery = &judge.recovery;
     recovery.bring_to_rest(&mut ending)?;
     let slides = interrupt::never(|| recovery.slides(&ending))?;
-    let mut accuracy = case.island().accuracy;
+    let mut accuracy = Accuracy { data: settings.data_accuracy };
     let goes_on = !ending.solution.verdict.is_stop();
     if dual.cleaned.is_some() || !slides.all.is_empty() {
         accuracy.data = case.model.accuracy_of_coordinates();

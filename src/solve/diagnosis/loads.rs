@@ -130,7 +130,7 @@ impl Unheld {
             loads,
             shares,
             body,
-            accuracy: island.accuracy,
+            accuracy: Accuracy { data: data.accuracy },
         }
     }
 
