@@ -311,14 +311,7 @@ fn restricted(
 impl Island {
     fn empty() -> Self {
         let (contact, equalities, friction) = Default::default();
-        Self {
-            bodies: Vec::new(),
-            ranges: Vec::new(),
-            contact,
-            equalities,
-            friction,
-            unit: 1.0,
-        }
+        Self { bodies: Vec::new(), ranges: Vec::new(), contact, equalities, friction, unit: 1.0 }
     }
 }
 

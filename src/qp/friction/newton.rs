@@ -157,7 +157,7 @@ impl Run<'_, '_> {
     }
 
     pub fn model(&mut self, face: Face) -> Result<Model> {
-        self.counts.coarse_factorisations += 2;
+        self.counts.coarse_factorisations += 2 * usize::from(!self.problem.qp.e.is_empty());
         Model::new(face, &mut self.motions)
     }
 
@@ -200,6 +200,9 @@ impl Run<'_, '_> {
 
     /// `v <- v - G'(G G')^+ G v`
     pub fn without_motions(&mut self, v: &mut [f64]) -> Result<()> {
+        if self.problem.qp.e.is_empty() {
+            return Ok(());
+        }
         let beta = self.all_rows.solve(&self.problem.qp.g_transposed.mul_transposed(v))?;
         self.counts.coarse_solves += 1;
         v.iter_mut().enumerate().for_each(|(i, v)| *v -= self.problem.qp.g_transposed.row_dot(i, &beta));
@@ -273,6 +276,9 @@ impl Run<'_, '_> {
 
     /// As `balance_missed`, for any e.
     fn imbalance(&mut self, x: &[f64], e: &[f64]) -> Result<f64> {
+        if e.is_empty() {
+            return Ok(0.0);
+        }
         let mut left = e.to_vec();
         self.problem.qp.g_transposed.mul_transposed_add(-1.0, x, &mut left);
         self.counts.coarse_solves += 1;

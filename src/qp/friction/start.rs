@@ -25,9 +25,10 @@ impl<'a, 'w> Run<'a, 'w> {
         let all_rows =
             motions.inverse(&of_rows(problem.cones), vec![1.0; problem.qp.b.len()], (false, 0.0))?;
         let y = start.x.map_or_else(|| vec![0.0; problem.qp.b.len()], <[f64]>::to_vec);
+        let factorised = usize::from(!problem.qp.e.is_empty());
         let run = Self {
             pairs: start.pairs.of_order(y.len()),
-            counts: Counts { coarse_factorisations: 1, starts: 1, ..Counts::default() },
+            counts: Counts { coarse_factorisations: factorised, starts: 1, ..Counts::default() },
             limit: limits.products,
             scale: 0.0,
             small: 0.0,
