@@ -37,7 +37,7 @@ pub fn seeds(problems: u64) -> Range<u64> {
     first..first + asked("BATTERY").unwrap_or(problems)
 }
 
-fn sizes() -> &'static Sizes {
+pub fn sizes() -> &'static Sizes {
     if asked("BATTERY_MIXTURE") == Some(2) {
         &OTHER_SIZES
     } else {

@@ -2,6 +2,7 @@
 
 mod battery;
 mod by_hand;
+mod cut;
 mod drawn;
 mod driven;
 mod enumeration;

@@ -1,6 +1,7 @@
 //! Bodies of the host that share numbers of unknowns: glued, they are one body, and no row says so.
 
 use crate::bodies::{apart, blocks, solved, Model};
+use decks::mesh::Mesh;
 use feti_contact::error::Kind;
 use feti_contact::solver::{Problem, RowKind, RowsInput};
 
@@ -293,6 +294,60 @@ fn rows_of_the_host_may_repeat_the_glue_but_not_contradict_it() {
             assert_eq!(weights.len(), rows);
             let first = glued.model.rows.len();
             assert!(weights.iter().all(|(row, _)| (first..first + rows).contains(row)), "{weights:?}");
+        }
+    }
+}
+
+/// A snap ring pressed against its bore may turn and move along the axis. A stop that carries no force turns it.
+#[test]
+fn a_snap_ring_travels_least_whole_cut_glued_and_after_load_steps() {
+    let mesh = Mesh::grid([24, 1, 2], |[x, y, z]| {
+        let (turn, radius) = (5.8 * x, 1.0 + 0.1 * y);
+        [radius * turn.cos(), -radius * turn.sin(), 0.1 * z]
+    });
+    let (number, unknowns) = mesh.numbers();
+    let (mut load, mut rows) = (vec![0.0; unknowns], Vec::new());
+    for (k, at) in mesh.nodes.iter().enumerate() {
+        let (radius, first) = (at[0].hypot(at[1]), number[k].unwrap());
+        let out = [at[0] / radius, at[1] / radius];
+        if radius > 1.05 {
+            let entries = (0..2).map(|axis| (0, first + axis, out[axis])).collect();
+            rows.push((entries, 0.001 * (1.0 + at[1])));
+        } else {
+            (0..2).for_each(|axis| load[first + axis] = 1e-3 * out[axis] * (1.0 + 0.3 * at[0]));
+        }
+    }
+    rows.push((vec![(0, number[0].unwrap() + 1, 1.0)], -1e-3));
+    let whole = Model { bodies: vec![mesh], loads: vec![load], rows };
+    let mut one = whole.by_elements(1, true).unwrap();
+    let (u, lambda, _) = solved(&mut one);
+    assert_eq!(one.report().unwrap().undetermined, 2);
+    assert!(*lambda.last().unwrap() <= 1e-12 * largest(&lambda));
+    let glued = Glued::of(&whole, 3, |[x, y, _]| if y > 0.3 { 0 } else { 1 + usize::from(x > 0.2) });
+    let steps = |problem: &mut Problem, loads: &[Vec<f64>]| {
+        for step in 1..=5 {
+            for (body, load) in loads.iter().enumerate() {
+                let part: Vec<f64> = load.iter().map(|f| f64::from(step) / 5.0 * f).collect();
+                problem.set_load(body, &part).unwrap();
+            }
+            solved(problem);
+            problem.set_str("start", "previous").unwrap();
+        }
+    };
+    for pieces in [1, 3, 40] {
+        let mut after = whole.by_elements(pieces, true).unwrap();
+        steps(&mut after, &whole.loads);
+        let mut of_parts = glued.glued(pieces);
+        steps(&mut of_parts, &glued.model.loads);
+        let by_number = |own: &[f64]| glued.by_number(own).0;
+        for (how, own) in [
+            ("alone", solved(&mut whole.by_elements(pieces, true).unwrap()).0),
+            ("alone, in steps", after.displacements().unwrap().to_vec()),
+            ("glued", by_number(&solved(&mut glued.glued(pieces)).0)),
+            ("glued, in steps", by_number(of_parts.displacements().unwrap())),
+            ("glued by rows", by_number(&solved(&mut glued.by_rows(pieces)).0)),
+        ] {
+            assert!(apart(&own, &u) < 1e-8, "{pieces} pieces, {how}: {:e}", apart(&own, &u));
         }
     }
 }

@@ -6,6 +6,9 @@ use decks::{Block, Body, Csr};
 
 use super::node::Contact;
 
+/// Unknowns of an element within its body, and its matrix.
+pub type Element = (Vec<usize>, Vec<f64>);
+
 /// Bodies and what they are measured in.
 pub struct Drawing {
     pub dim: usize,
@@ -18,6 +21,20 @@ pub struct Drawing {
     springs: Vec<Vec<(usize, f64)>>,
     /// Largest K_ii of each body.
     pub stiffness: Vec<f64>,
+    /// The elements of each body, springs to the ground included.
+    pub elements: Vec<Vec<Element>>,
+}
+
+/// The elements of a block, without motions.
+pub fn elements(block: &Block) -> Vec<Element> {
+    let (dim, corners) = (block.dimension, 1 << block.dimension);
+    let of = |e: usize| {
+        let low = block.low(e);
+        let node = |c: usize| block.node([low[0] + (c & 1), low[1] + (c >> 1 & 1), low[2] + (c >> 2)]);
+        let unknowns = (0..corners).flat_map(|c| (0..dim).map(move |i| dim * node(c) + i));
+        (unknowns.collect(), block.element())
+    };
+    (0..block.volume()).map(of).collect()
 }
 
 /// How a body is held.
@@ -30,8 +47,8 @@ pub enum Held {
 
 impl Drawing {
     pub fn new(dim: usize, length: f64, young: f64) -> Self {
-        let (bodies, free, springs, stiffness) = Default::default();
-        Self { dim, length, young, bodies, free, springs, stiffness }
+        let (bodies, free, springs, stiffness, elements) = Default::default();
+        Self { dim, length, young, bodies, free, springs, stiffness, elements }
     }
 
     /// First unknown of a body.
@@ -52,12 +69,13 @@ impl Drawing {
     /// `kind` 0: a point, 1 and 2: a truss, else a block.
     pub fn add_held(&mut self, random: &mut Random, softer: f64, kind: usize, held: Held) {
         let young = self.young * softer;
-        let (mut k, free) = match kind {
+        let (mut elements, free) = match kind {
             0 => self.point(),
             1 | 2 => self.truss(random, young),
             _ => self.block(random, young),
         };
         let n = free[0].len();
+        let mut k = sum(n, &elements);
         let unit = match kind {
             0 => young * self.length.powi(self.dim as i32 - 2),
             _ => (0..n).map(|i| k[i * n + i]).fold(0.0, f64::max),
@@ -72,7 +90,10 @@ impl Drawing {
             let j = if held == Held::Wholly { spring } else { random.below(n) };
             springs.push((j, unit * random.decades(-1.0, 0.5)));
         }
-        springs.iter().for_each(|&(j, spring)| k[j * n + j] += spring);
+        for &(j, spring) in &springs {
+            k[j * n + j] += spring;
+            elements.push((vec![j], vec![spring]));
+        }
         let stiffness = if kind == 0 { unit } else { (0..n).map(|i| k[i * n + i]).fold(0.0, f64::max) };
         let null_space = null_space(&free, &springs);
         self.bodies.push(Body {
@@ -86,14 +107,15 @@ impl Drawing {
         self.free.push(free);
         self.springs.push(springs);
         self.stiffness.push(stiffness);
+        self.elements.push(elements);
     }
 
-    fn point(&self) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn point(&self) -> (Vec<Element>, Vec<Vec<f64>>) {
         let free = (0..self.dim).map(|axis| (0..self.dim).map(|i| f64::from(i == axis)).collect());
-        (vec![0.0; self.dim * self.dim], free.collect())
+        (vec![((0..self.dim).collect(), vec![0.0; self.dim * self.dim])], free.collect())
     }
 
-    fn block(&self, random: &mut Random, young: f64) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn block(&self, random: &mut Random, young: f64) -> (Vec<Element>, Vec<Vec<f64>>) {
         let most = if self.dim == 2 { 2 } else { 1 };
         let block = Block {
             dimension: self.dim,
@@ -103,11 +125,11 @@ impl Drawing {
             poisson: random.between(0.0, 0.45),
             ..Block::default()
         };
-        (dense(&block.stiffness()), block.rigid_modes())
+        (elements(&block), block.rigid_modes())
     }
 
     /// A bar between any two of a few nodes.
-    fn truss(&self, random: &mut Random, young: f64) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn truss(&self, random: &mut Random, young: f64) -> (Vec<Element>, Vec<Vec<f64>>) {
         let (dim, count) = (self.dim, self.dim + 1 + random.below(3));
         let n = dim * count;
         // corners of a simplex, moved a little, then others
@@ -118,17 +140,14 @@ impl Drawing {
                 (0..dim).map(|axis| at(axis, random.uniform())).collect()
             })
             .collect();
-        let mut k = vec![0.0; n * n];
+        let mut bars = Vec::new();
         for (a, b) in (0..count).flat_map(|a| (0..a).map(move |b| (a, b))) {
-            let mut bar = vec![0.0; n];
-            for axis in 0..dim {
-                bar[dim * a + axis] = places[a][axis] - places[b][axis];
-                bar[dim * b + axis] = -bar[dim * a + axis];
-            }
+            let along = (0..dim).map(|axis| places[a][axis] - places[b][axis]);
+            let bar: Vec<f64> = along.clone().chain(along.map(|d| -d)).collect();
             let stiff = young * self.length.powi(dim as i32 - 2) * random.decades(-0.5, 0.5);
-            for i in 0..n {
-                (0..n).for_each(|j| k[i * n + j] += stiff * bar[i] * bar[j]);
-            }
+            let unknowns = [a, b].into_iter().flat_map(|node| (0..dim).map(move |i| dim * node + i));
+            let k = bar.iter().flat_map(|v| bar.iter().map(move |w| stiff * v * w));
+            bars.push((unknowns.collect(), k.collect()));
         }
         let unit = |axis: usize| (0..n).map(|i| f64::from(i % dim == axis)).collect::<Vec<f64>>();
         let mut free: Vec<Vec<f64>> = (0..dim).map(unit).collect();
@@ -141,7 +160,7 @@ impl Drawing {
             }
             free.push(turn);
         }
-        (k, free)
+        (bars, free)
     }
 
     /// Stiff springs under the nodes of some contacts, across them or along every axis.
@@ -159,6 +178,7 @@ impl Drawing {
             for j in first..first + axes {
                 k[j * n + j] += stiff;
                 self.springs[p].push((j, stiff));
+                self.elements[p].push((vec![j], vec![stiff]));
             }
             body.stiffness = Csr::from_dense(n, &k);
             body.null_space = null_space(&self.free[p], &self.springs[p]);
@@ -189,6 +209,16 @@ impl Drawing {
 
 fn dense(k: &Csr) -> Vec<f64> {
     (0..k.rows).flat_map(|i| (0..k.cols).map(move |j| k.get(i, j))).collect()
+}
+
+/// The matrix of n unknowns that these elements add up to.
+fn sum(n: usize, elements: &[Element]) -> Vec<f64> {
+    let mut k = vec![0.0; n * n];
+    for (unknowns, own) in elements {
+        let entries = unknowns.iter().flat_map(|i| unknowns.iter().map(move |j| i * n + j));
+        entries.zip(own).for_each(|(at, value)| k[at] += value);
+    }
+    k
 }
 
 fn largest(v: &[f64]) -> f64 {

@@ -3,7 +3,7 @@
 use decks::random::Random;
 use decks::{Block, Deck, Friction};
 
-use super::body::{Drawing, Held};
+use super::body::{elements, Drawing, Held};
 use super::node::{Contact, State};
 use super::{coefficient, Drawn, Known, Sizes};
 
@@ -14,7 +14,7 @@ const PUSHES: [f64; 4] = [0.9, 0.999, 1.001, 1.1];
 pub fn sliding(random: &mut Random) -> Drawn {
     let dim = 2 + usize::from(random.chance(0.4));
     let count = 1 + random.below(3);
-    let elements = match dim {
+    let grid = match dim {
         2 => [1 + random.below(4), 1 + random.below(2), 1],
         _ => [1 + random.below(2), 1 + random.below(2), 1],
     };
@@ -22,7 +22,7 @@ pub fn sliding(random: &mut Random) -> Drawn {
     size[dim - 1] = 0.3;
     let block = |random: &mut Random| Block {
         dimension: dim,
-        elements,
+        elements: grid,
         size,
         young: random.decades(-1.0, 1.0),
         ..Block::default()
@@ -32,10 +32,10 @@ pub fn sliding(random: &mut Random) -> Drawn {
     let mut deck = Deck::new("sliding", bodies);
     deck.friction = Friction::none(dim - 1, deck.dofs());
     let up = dim - 1;
-    let grid: Vec<[usize; 3]> = blocks[0].grids().collect();
-    let nodes_at = |level: usize| (0..grid.len()).filter(|&i| grid[i][up] == level).collect::<Vec<_>>();
-    let (lower, upper) = (nodes_at(0), nodes_at(elements[up]));
-    let n = dim * grid.len();
+    let places: Vec<[usize; 3]> = blocks[0].grids().collect();
+    let nodes_at = |level: usize| (0..places.len()).filter(|&i| places[i][up] == level).collect::<Vec<_>>();
+    let (lower, upper) = (nodes_at(0), nodes_at(grid[up]));
+    let n = dim * places.len();
     let press = random.decades(-2.0, 0.0);
     let kind = random.below(3);
     let mut holds = Vec::new();
@@ -66,7 +66,8 @@ pub fn sliding(random: &mut Random) -> Drawn {
     for &i in &lower {
         (0..up).for_each(|axis| deck.bodies[pushed].load[dim * i + axis] += push * share * along[axis]);
     }
-    Drawn { class: "sliding", deck, known: if of < 1.0 { Known::Answer } else { Known::NotHeld } }
+    let known = if of < 1.0 { Known::Answer } else { Known::NotHeld };
+    Drawn { class: "sliding", deck, known, elements: blocks.iter().map(elements).collect() }
 }
 
 /// Any loads on held bodies; on floating ones the forces of rows that do not all keep their laws.
@@ -116,5 +117,5 @@ pub fn loaded(random: &mut Random, class: &'static str, sizes: &Sizes) -> Drawn 
             body.load.iter_mut().zip(own).for_each(|(f, k)| *f += k);
         }
     }
-    Drawn { class, deck, known: Known::Nothing }
+    Drawn { class, deck, known: Known::Nothing, elements: drawing.elements }
 }

@@ -8,6 +8,8 @@ mod node;
 use decks::random::Random;
 use decks::{Deck, Friction, Rows};
 
+pub use body::Element;
+
 use body::Drawing;
 use node::{Contact, State};
 
@@ -26,6 +28,8 @@ pub struct Drawn {
     pub class: &'static str,
     pub deck: Deck,
     pub known: Known,
+    /// The elements of each body.
+    pub elements: Vec<Vec<Element>>,
 }
 
 /// What of a class is other than in the first.
@@ -65,7 +69,10 @@ pub fn case(seed: u64, sizes: &Sizes) -> Drawn {
     match class {
         "sliding" => loaded::sliding(&mut random),
         "loads, held" | "loads, floating" => loaded::loaded(&mut random, class, sizes),
-        _ => Drawn { class, deck: with_answer(&mut random, class, sizes), known: Known::Answer },
+        _ => {
+            let (deck, elements) = with_answer(&mut random, class, sizes);
+            Drawn { class, deck, known: Known::Answer, elements }
+        }
     }
 }
 
@@ -78,7 +85,7 @@ fn coefficient(random: &mut Random) -> f64 {
     }
 }
 
-fn with_answer(random: &mut Random, class: &'static str, sizes: &Sizes) -> Deck {
+fn with_answer(random: &mut Random, class: &'static str, sizes: &Sizes) -> (Deck, Vec<Vec<Element>>) {
     let dim = match class {
         "plane" => 2,
         "space" => 3,
@@ -102,7 +109,8 @@ fn with_answer(random: &mut Random, class: &'static str, sizes: &Sizes) -> Deck 
     if class == "stiff supports" {
         drawing.support(random, &mut contacts);
     }
-    answered(random, class, drawing, &contacts)
+    let elements = drawing.elements.clone();
+    (answered(random, class, drawing, &contacts), elements)
 }
 
 /// One to `most` contacts; every body has one where there is room.
