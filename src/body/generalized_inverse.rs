@@ -147,6 +147,12 @@ impl GeneralizedInverse {
         self.stiffness.iter().take(self.own_motions()).any(|stiffness| *stiffness != 0.0)
     }
 
+    /// Number of motions that K does not resist.
+    pub fn floating(&self) -> usize {
+        let resisted = self.stiffness.iter().filter(|stiffness| **stiffness != 0.0).count();
+        self.null_space.cols - resisted
+    }
+
     /// Number of carried motions, which are the last.
     pub fn carried_motions(&self) -> usize {
         self.carried.as_ref().map_or(0, |carried| carried.count())

@@ -55,7 +55,7 @@ impl GeneralizedInverse {
         match planned {
             Ok(Plan::Known(known)) => Ok(Plan::Known(Known {
                 misfit: Some(misfit),
-                retry: Some(Retry::Search { tolerance, fixing: given }),
+                retry: Some(Retry::Search { tolerance, fixing: given, floats: None }),
                 ..known
             })),
             Err(Error { kind: Kind::NullSpace, .. }) => {

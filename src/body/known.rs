@@ -37,8 +37,8 @@ pub struct Known {
 
 /// The way to K+ if K has more null vectors than are known.
 pub(super) enum Retry {
-    /// The null space is searched in K.
-    Search { tolerance: f64, fixing: Option<Vec<usize>> },
+    /// The null space is searched in K. `floats`: as many motions as the host has told, beside soft ones.
+    Search { tolerance: f64, fixing: Option<Vec<usize>>, floats: Option<usize> },
     /// All motions that were declared soft, also those that K resists like any other, get a column.
     AllSoft(NullSpaceInput),
 }

@@ -86,11 +86,13 @@ impl Plan {
         })
     }
 
-    /// Searches the null space in K if K turns out to have more null vectors than planned, as in a piece with a hinge.
-    pub fn or_search(self, tolerance: f64) -> Self {
+    /// Searches the null space in K if K turns out to have more null vectors than planned, as in a piece with a hinge; those that the
+    /// host has `told` are all, and motions that K hardly resists are soft, as the bending of a very slender body.
+    pub fn or_search(self, tolerance: f64, told: bool) -> Self {
         match self {
-            Self::Known(known) if known.retry.is_none() => {
-                Self::Known(Known { retry: Some(Retry::Search { tolerance, fixing: None }), ..known })
+            Self::Known(known) if known.retry.is_none() && !known.given => {
+                let floats = told.then_some(known.null_space.cols);
+                Self::Known(Known { retry: Some(Retry::Search { tolerance, fixing: None, floats }), ..known })
             }
             planned => planned,
         }
@@ -219,7 +221,7 @@ impl Plan {
                     match known.execute(most) {
                         Ok(made) if made.inverse.softness >= limit => Ok(made),
                         Err(error) if !retry.follows(&error, misfit) => Err(error),
-                        _ => retry.execute(k, misfit, pilots),
+                        first => retry.execute(k, misfit, pilots, first),
                     }
                 }
             },
@@ -237,18 +239,33 @@ impl Retry {
         }
     }
 
+    /// The host has told how many motions float.
+    fn is_told(&self) -> bool {
+        matches!(self, Self::Search { floats: Some(_), .. })
+    }
+
     /// Whether another way may succeed after `error`. If all rigid motions fit, K is not the K of other coordinates.
     fn follows(&self, error: &Error, misfit: Option<Misfit>) -> bool {
         match error.kind {
             Kind::NullSpace => true,
+            Kind::Indefinite | Kind::Internal if self.is_told() => false,
             Kind::Indefinite | Kind::Internal => misfit.is_none_or(|misfit| misfit.fit < misfit.of),
             _ => false,
         }
     }
 
-    fn execute(self, k: Multiple, misfit: Option<Misfit>, pilots: Option<Pilots>) -> Result<Factorised> {
+    /// `first`: what came of the motions known.
+    fn execute(
+        self,
+        k: Multiple,
+        misfit: Option<Misfit>,
+        pilots: Option<Pilots>,
+        first: Result<Factorised>,
+    ) -> Result<Factorised> {
+        let mut told = None;
         let planned = match self {
-            Self::Search { tolerance, fixing } => {
+            Self::Search { tolerance, fixing, floats } => {
+                told = floats;
                 let search = Search::new(k, tolerance, fixing.as_deref())?;
                 Plan::Search(match misfit {
                     Some(misfit) => search.instead_of(misfit),
@@ -261,8 +278,14 @@ impl Retry {
                 GeneralizedInverse::plan_all(k, &input, f64::INFINITY, None)?
             }
         };
-        let mut made = planned.with_pilots(pilots)?.execute()?;
-        made.factorisations += 1;
-        Ok(made)
+        match planned.with_pilots(pilots)?.execute() {
+            Ok(made) if told.is_none_or(|floats| floats == made.inverse.floating()) => {
+                Ok(Factorised { factorisations: made.factorisations + 1, ..made })
+            }
+            Err(error) if told.is_none() || !matches!(error.kind, Kind::NullSpace | Kind::Indefinite) => {
+                Err(error)
+            }
+            _ => first,
+        }
     }
 }

@@ -213,7 +213,8 @@ impl Ritz {
             return match cut(&[values, &[1.0][..]].concat()) {
                 Some((0, gap)) => MotionVerdict::Held { doubtful: 0, gap },
                 Some((dimension, gap)) => MotionVerdict::Free { dimension, gap },
-                None => MotionVerdict::Unclear,
+                // those that K resists count as soft
+                None => MotionVerdict::Free { dimension: explained, gap: 1.0 },
             };
         }
         if values[0] <= self.products[0] {
@@ -230,12 +231,14 @@ impl Ritz {
         Ok(turned)
     }
 
-    /// Number of motions, beyond the first `free`, that only springs hold which are so weak that a gap follows.
+    /// Number of motions, beyond the first `free`, that only springs hold which are so weak that a gap follows, or that are as soft
+    /// as the bending of a very slender body.
     pub fn weak(&self, free: usize) -> usize {
         let values = &self.values;
         let apart = |q: &usize| values[q - 1] <= WEAK && values[*q] >= GAP * values[q - 1].max(ROUNDING);
-        let most = (free + 1..values.len()).take_while(|q| *q <= RIGID).filter(apart).last();
-        most.map_or(0, |q| q - free)
+        let springs = (free + 1..values.len()).take_while(|q| *q <= RIGID).filter(apart).last();
+        let slender = (free + 1..values.len()).take_while(|q| values[q - 1] < SOFT).last();
+        springs.max(slender).map_or(0, |q| q - free)
     }
 
     /// The doubt about the first motions: if they are free but would be supports with exact entries, or if rounding is

@@ -69,7 +69,8 @@ fn plan(body: &Body, pilots: Option<Pilots>, tolerance: f64, is_piece: bool) -> 
 fn own_plan(body: &Body, k: Multiple, tolerance: f64, is_piece: bool) -> Result<Plan> {
     let fixing = body.fixing.as_deref();
     if let Some(given) = &body.null_space {
-        return GeneralizedInverse::plan_with(k, given, tolerance, fixing);
+        let planned = GeneralizedInverse::plan_with(k, given, tolerance, fixing)?;
+        return Ok(planned.or_search(tolerance, true));
     }
     let Some(coordinates) = &body.coordinates else {
         return GeneralizedInverse::search(k, tolerance, fixing);
@@ -80,7 +81,7 @@ fn own_plan(body: &Body, k: Multiple, tolerance: f64, is_piece: bool) -> Result<
         modes => GeneralizedInverse::plan_near(k, &rigid, modes, tolerance, fixing)?,
     };
     if is_piece {
-        return Ok(planned.or_search(tolerance).carrying(rigid));
+        return Ok(planned.or_search(tolerance, false).carrying(rigid));
     }
     Ok(planned)
 }

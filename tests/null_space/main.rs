@@ -6,6 +6,7 @@ mod coordinates;
 mod digits;
 mod given;
 mod rows;
+mod slender;
 mod tidy;
 
 use bodies::{bar, chain, cube, frame, held, membrane};

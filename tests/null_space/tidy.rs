@@ -13,7 +13,7 @@ fn element(bending: f64, h: f64) -> Csr {
     Csr::from_dense(4, &[a, b, -a, b, b, c, -b, d, -a, -b, a, -b, b, d, -b, c])
 }
 
-fn beam(elements: usize, bending: f64, h: f64) -> Csr {
+pub fn beam(elements: usize, bending: f64, h: f64) -> Csr {
     chain(&vec![&element(bending, h); elements], 2, &vec![1.0; elements])
 }
 
