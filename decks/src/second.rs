@@ -79,7 +79,16 @@ struct Second<'a> {
 /// The answer; `None` where pivoting does not end, K is not semi-definite, or the last
 /// step still takes a force that counts: bodies held by springs 1e11 times softer than they are. Rows with an infinite gap stay open.
 pub fn solve(deck: &Deck) -> Option<Answer> {
-    let mut second = Second::new(deck)?;
+    solve_with(deck, without_motions)
+}
+
+/// With K to its last digit: what it resists of a far rigid motion by rounding counts as any other stiffness.
+pub fn solve_to_the_letter(deck: &Deck) -> Option<Answer> {
+    solve_with(deck, entries)
+}
+
+fn solve_with(deck: &Deck, of_body: fn(&Body) -> Vec<Dd>) -> Option<Answer> {
+    let mut second = Second::new(deck, of_body)?;
     second.set_matrix();
     let (n, m) = (deck.dofs(), second.rows.len());
     let (mut u, mut forces) = (vec![Dd::ZERO; n], vec![Dd::ZERO; m]);
@@ -97,12 +106,12 @@ pub fn solve(deck: &Deck) -> Option<Answer> {
 }
 
 impl<'a> Second<'a> {
-    fn new(deck: &'a Deck) -> Option<Second<'a>> {
+    fn new(deck: &'a Deck, of_body: fn(&Body) -> Vec<Dd>) -> Option<Second<'a>> {
         let diagonal: Vec<f64> = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal()).collect();
         let mut factors = Vec::new();
         for body in &deck.bodies {
             let n = body.dofs();
-            let mut dense = without_motions(body);
+            let mut dense = of_body(body);
             for i in 0..n {
                 dense[i * n + i] = dense[i * n + i] + Dd::product(SHIFT, body.stiffness.get(i, i));
             }
@@ -230,14 +239,21 @@ impl<'a> Second<'a> {
     }
 }
 
-/// P'K P, P = I - R R'D with R'DR = I: K as the host gives it resists rigid motions to rounding, which a body that travels
-/// far would feel. R is that of the host without its noise, R - (K + delta D)^-1 K R, which such a body would feel as well.
-fn without_motions(body: &Body) -> Vec<Dd> {
+/// K, n x n.
+fn entries(body: &Body) -> Vec<Dd> {
     let n = body.dofs();
     let mut dense = vec![Dd::ZERO; n * n];
     for i in 0..n {
         body.stiffness.row(i).for_each(|(j, k)| dense[i * n + j] = Dd::from(k));
     }
+    dense
+}
+
+/// P'K P, P = I - R R'D with R'DR = I: K as the host gives it resists rigid motions to rounding, which a body that travels
+/// far would feel. R is that of the host without its noise, R - (K + delta D)^-1 K R, which such a body would feel as well.
+fn without_motions(body: &Body) -> Vec<Dd> {
+    let n = body.dofs();
+    let mut dense = entries(body);
     let diagonal: Vec<Dd> = body.stiffness.diagonal().into_iter().map(Dd::from).collect();
     let weighted = |v: &[Dd]| -> Vec<Dd> { v.iter().zip(&diagonal).map(|(v, d)| *v * *d).collect() };
     let mut basis: Vec<(Vec<Dd>, Vec<Dd>)> = Vec::new();

@@ -50,19 +50,23 @@ pub fn soft_motions(
     let null = orthonormal(metric, &following(k, corrected(factor, k, null)?, &vectors)?)?;
     let r = without(metric, vectors, &null);
     let mut r = corrected(factor, k, orthonormal(metric, &r)?)?;
-    // rounding of what rows give, which is 1 by R'D~R
-    let given = if weights.is_some() { ROUNDING } else { 0.0 };
-    let found = Resistance::of(k, &r)?;
     if r.cols > 0 {
-        let mut stiffness = found.stiffness(&r)?;
-        stiffness.data.iter_mut().filter(|entry| entry.abs() <= given).for_each(|entry| *entry = 0.0);
-        let (_, turn) = symmetric_eigen(&stiffness)?;
+        let (_, turn) = symmetric_eigen(&Resistance::of(k, &r)?.stiffness(&r)?)?;
         r.turn_rows(&turn);
+        // rounding of the stiffest couples the others with them
+        let Resistance { noise, image } = Resistance::of(k, &r)?;
+        for i in (1..r.cols).rev() {
+            let stiffness = dot(r.col(i), image.col(i));
+            for j in (0..i).filter(|_| stiffness > noise[i]) {
+                let share = dot(r.col(j), image.col(i)) / stiffness;
+                let stiffer = r.col(i).to_vec();
+                axpy(-share, &stiffer, r.col_mut(j));
+            }
+        }
     }
     let found = Resistance::of(k, &r)?;
     let known = found.diagonal(&r).zip(&found.noise);
-    let lambda =
-        known.map(|(stiffness, noise)| if stiffness.abs() > noise.max(given) { stiffness } else { 0.0 });
+    let lambda = known.map(|(stiffness, noise)| if stiffness.abs() > *noise { stiffness } else { 0.0 });
     let lambda = std::iter::repeat_n(0.0, null.cols).chain(lambda).collect();
     let mut all = null;
     all.push_cols(&r);

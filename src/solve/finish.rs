@@ -28,15 +28,16 @@ const NO_WORSE: f64 = 1.1;
 const UNEVEN: f64 = 100.0;
 
 /// Whether option `finish` asks for the finish of an island's answer. `automatic`: if an error that passes the
-/// certificate may be large on some body. With friction only if it is asked for: what the test refuses has been corrected.
-pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending) -> bool {
+/// certificate may be large on some body, or if the way that bodies have travelled has `spoilt` the answer for the place where they
+/// rest. With friction only if it is asked for: what the test refuses has been corrected.
+pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending, spoilt: bool) -> bool {
     if recovery.friction {
         return settings.finish == FinishBy::Direct;
     }
     let default = settings.method == Method::Proportioning && settings.finish == FinishBy::Automatic;
     let overlooked = ending.judgement.unevenness > UNEVEN;
     settings.finish == FinishBy::Direct
-        || default && (overlooked || is_delicate(recovery, ending)) && Rung::Finish.is_tried()
+        || default && (overlooked || spoilt || is_delicate(recovery, ending)) && Rung::Finish.is_tried()
 }
 
 /// The error of an answer may be much larger than its certificate: beside soft bodies, by rows that join uneven bodies, and where
@@ -135,10 +136,11 @@ impl<'a> Finish<'a, '_> {
         while visited.len() < FACES && !visited.contains(&active) {
             point.hold(&active);
             let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
+            let undetermined;
             if rows.len() + point.alpha.len() > dense {
                 let Some(faces) = self.sparse()? else { break };
                 let Some(face) = faces.on(rows)? else { break };
-                self.correct(&mut point, FaceSolver::Sparse(&face))?;
+                undetermined = self.correct(&mut point, FaceSolver::Sparse(&face))?;
             } else {
                 let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
                 let mut feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
@@ -147,12 +149,17 @@ impl<'a> Finish<'a, '_> {
                     feedback = Feedback::on(feedback.face.in_full()?, point.alpha.len(), &self.negative)?;
                     self.correct(&mut point, FaceSolver::Dense(&feedback))?;
                 }
+                undetermined = feedback.face.undetermined();
             }
             self.ending.solution.counts.direct += 1;
             if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
                 break;
             }
-            visited.push(std::mem::replace(&mut active, point.active(self.recovery)));
+            let next = point.active(self.recovery);
+            if next == active {
+                self.keep(&point, undetermined, is_no_worse)?;
+            }
+            visited.push(std::mem::replace(&mut active, next));
         }
         Ok(())
     }
@@ -164,7 +171,7 @@ impl<'a> Finish<'a, '_> {
             interrupt::check()?;
             let Some((size, states)) = point.step_with_friction(self.recovery)? else { break };
             self.ending.solution.counts.direct += 1;
-            self.keep(&point, self.ending.solution.undetermined)?;
+            self.keep(&point, self.ending.solution.undetermined, is_better)?;
             let is_settled = states == before && !(size < 0.5 * last);
             if is_settled || self.passes() && self.ending.judgement.certificate.worst() <= ROUNDING {
                 break;
@@ -175,26 +182,31 @@ impl<'a> Finish<'a, '_> {
     }
 
     /// Corrections on one face while each is less than half the previous one; every intermediate answer that is no worse
-    /// replaces the current one.
-    fn correct(&mut self, point: &mut SplitPoint, face: FaceSolver) -> Result<()> {
+    /// replaces the current one. Returns the number of motions that the face leaves open.
+    fn correct(&mut self, point: &mut SplitPoint, face: FaceSolver) -> Result<usize> {
         let (mut last, undetermined) = (f64::INFINITY, face.undetermined());
         for _ in 0..CORRECTIONS {
             interrupt::check()?;
             let size = point.correct(self.recovery, &self.negative, face)?;
-            self.keep(point, undetermined)?;
+            self.keep(point, undetermined, is_better)?;
             if size >= 0.5 * last {
                 break;
             }
             last = size;
         }
-        Ok(())
+        Ok(undetermined)
     }
 
-    fn keep(&mut self, point: &SplitPoint, undetermined: usize) -> Result<()> {
+    fn keep(
+        &mut self,
+        point: &SplitPoint,
+        undetermined: usize,
+        replaces: fn(&Certificate, &Certificate) -> bool,
+    ) -> Result<()> {
         let x = point.forces(&self.recovery.scaled.gaps.bounded);
         let recovered = self.recovery.with_forces(point.displacement(), &x);
         let judgement = self.recovery.judged(&recovered)?;
-        if is_better(&judgement.certificate, &self.ending.judgement.certificate) {
+        if replaces(&judgement.certificate, &self.ending.judgement.certificate) {
             let solution = &mut self.ending.solution;
             (solution.x, solution.alpha) = (x, point.alpha.clone());
             solution.undetermined = undetermined;
@@ -215,6 +227,11 @@ fn is_better(new: &Certificate, old: &Certificate) -> bool {
         && (!old.passed()
             || much
             || entries.all(|(new, old)| new.ratio <= (NO_WORSE * old.ratio).max(ROUNDING)))
+}
+
+/// It passes, and in sum it is no worse: enough on the rows that signs confirm, which those of the other answer may not be.
+fn is_no_worse(new: &Certificate, old: &Certificate) -> bool {
+    new.passed() && new.worst() <= (NO_WORSE * old.worst()).max(ROUNDING)
 }
 
 #[cfg(test)]

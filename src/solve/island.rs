@@ -184,7 +184,7 @@ fn attempt(
     // an accepted answer is returned with its displacements and its certificate
     let mut ending = interrupt::never(|| judge.ending(solution))?;
     let recovery = &judge.recovery;
-    recovery.bring_to_rest(&mut ending)?;
+    let spoilt = recovery.bring_to_rest(&mut ending)?;
     let slides = interrupt::never(|| recovery.slides(&ending))?;
     let mut accuracy = Accuracy { data: settings.data_accuracy };
     let goes_on = !ending.solution.verdict.is_stop();
@@ -203,8 +203,9 @@ fn attempt(
     }
     let is_solved = ending.solution.verdict == Verdict::Solved;
     let finished = is_solved
-        && is_to_finish(settings, recovery, &ending)
-        && finish(recovery, &mut ending, false)?.replaced;
+        && is_to_finish(settings, recovery, &ending, spoilt.is_some())
+        && (finished_at_rest(recovery, &mut ending, spoilt)?
+            || finish(recovery, &mut ending, false)?.replaced);
     let slide = if finished { interrupt::never(|| recovery.slides(&ending))? } else { slides }.worst();
     let passed = ending.judgement.certificate.passed();
     let mut outcome = match outcome(case, dual, &ending.solution)? {
@@ -242,6 +243,17 @@ fn attempt(
         judging,
         recovering,
     })))
+}
+
+/// Corrects the answer of least travel that a far way has spoilt; whether it passes and replaces the other.
+fn finished_at_rest(recovery: &Recovery, ending: &mut Ending, spoilt: Option<Ending>) -> Result<bool> {
+    let Some(mut rest) = spoilt else { return Ok(false) };
+    finish(recovery, &mut rest, false)?;
+    let passes = rest.judgement.certificate.passed();
+    if passes {
+        *ending = rest;
+    }
+    Ok(passes)
 }
 
 /// F for the direct method, which observes the memory limit.

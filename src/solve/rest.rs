@@ -1,10 +1,10 @@
 //! If the forces of an answer leave motions free, the library returns the answer of least travel.
 
-use crate::certificate::{BodyData, Judgement};
+use crate::certificate::BodyData;
 use crate::error::{Kind, Result};
 use crate::linalg::Matrix;
 use crate::platform::interrupt;
-use crate::qp::{AnswerFace, Verdict};
+use crate::qp::{AnswerFace, Solution, Verdict};
 use crate::setup::Island;
 use crate::solve::held::without_force;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
@@ -20,26 +20,27 @@ struct AtRest {
 
 impl<'a> Recovery<'a> {
     /// Replaces the answer by that of least travel among the answers that differ by motions which nothing resists, unless
-    /// only the original answer passes. If the host or the time limit stops it, the answer is unchanged and the verdict
-    /// names the reason.
-    pub fn bring_to_rest(&self, ending: &mut Ending) -> Result<()> {
-        let judged = match self.judged_at_rest(ending) {
-            Ok(judged) => judged,
+    /// only the original answer passes: a far way has spoilt the other, which is returned. If the host or the time limit stops it, the
+    /// answer is unchanged and the verdict names the reason.
+    pub fn bring_to_rest(&self, ending: &mut Ending) -> Result<Option<Ending>> {
+        let rest = match self.judged_at_rest(ending) {
+            Ok(Some(rest)) => rest,
+            Ok(None) => return Ok(None),
             Err(error) => {
                 ending.solution.verdict = Verdict::of_refusal(error)?;
-                return Ok(());
+                return Ok(None);
             }
         };
-        let Some((AtRest { recovered, alpha, undetermined }, judgement)) = judged else { return Ok(()) };
-        if judgement.certificate.passed() || !ending.judgement.certificate.passed() {
-            (ending.solution.alpha, ending.solution.undetermined) = (alpha, undetermined);
-            (ending.recovered, ending.judgement) = (recovered, judgement);
+        if ending.judgement.certificate.passed() && !rest.judgement.certificate.passed() {
+            return Ok(Some(rest));
         }
-        Ok(())
+        let x = std::mem::take(&mut ending.solution.x);
+        *ending = Ending { solution: Solution { x, ..rest.solution }, ..rest };
+        Ok(None)
     }
 
-    /// The answer of least travel and its judgement; none if all motions are held by forces that are more than rounding.
-    fn judged_at_rest(&self, ending: &Ending) -> Result<Option<(AtRest, Judgement)>> {
+    /// The answer of least travel, x without forces that are rounding; none if all motions are held by others.
+    fn judged_at_rest(&self, ending: &Ending) -> Result<Option<Ending>> {
         if self.friction {
             return Ok(None);
         }
@@ -50,9 +51,13 @@ impl<'a> Recovery<'a> {
         if ending.solution.undetermined == 0 && !is_rounding {
             return Ok(None);
         }
-        let Some(at_rest) = self.at_rest(&held, ending)? else { return Ok(None) };
-        let judgement = self.judged(&at_rest.recovered)?;
-        Ok(Some((at_rest, judgement)))
+        let Some(AtRest { recovered, alpha, undetermined }) = self.at_rest(&held, ending)? else {
+            return Ok(None);
+        };
+        let judgement = self.judged(&recovered)?;
+        let mut solution = Solution { alpha, undetermined, ..ending.solution.clone() };
+        solution.x.iter_mut().zip(&held).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
+        Ok(Some(Ending { solution, deformed: ending.deformed.clone(), recovered, judgement }))
     }
 
     /// Rows of the dual whose forces hold nothing.
