@@ -204,11 +204,11 @@ impl<'a> Finish<'a, '_> {
         replaces: fn(&Certificate, &Certificate) -> bool,
     ) -> Result<()> {
         let x = point.forces(&self.recovery.scaled.gaps.bounded);
-        let recovered = self.recovery.with_forces(point.displacement(), &x);
+        let recovered = self.recovery.with_forces(point.displacement(), &x.parts());
         let judgement = self.recovery.judged(&recovered)?;
         if replaces(&judgement.certificate, &self.ending.judgement.certificate) {
             let solution = &mut self.ending.solution;
-            (solution.x, solution.alpha) = (x, point.alpha.clone());
+            (solution.x, solution.alpha) = (x.values(), point.alpha.clone());
             solution.undetermined = undetermined;
             (self.ending.recovered, self.ending.judgement) = (recovered, judgement);
             self.ending.deformed = point.deformed(self.recovery);
@@ -292,7 +292,7 @@ mod tests {
         two_springs(0.0, |judge, _| {
             let recovery = &judge.recovery;
             let point = SplitPoint::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0, 1.0);
-            assert_eq!(point.forces(&[true, true]), [2.0, 0.0]);
+            assert_eq!(point.forces(&[true, true]).values(), [2.0, 0.0]);
             assert_eq!(point.active(recovery), [false, true]);
         });
     }

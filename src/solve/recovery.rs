@@ -94,7 +94,7 @@ impl<'a> Recovery<'a> {
         let dual = &self.ready.dual;
         let mut u = dual.rigid_motion(&dual.balanced(x, alpha), deformed.len());
         axpy(1.0, deformed, &mut u);
-        self.with_forces(u, x)
+        self.with_forces(u, &[x])
     }
 
     /// `K+ (f - B'x)`
@@ -109,9 +109,16 @@ impl<'a> Recovery<'a> {
         self.ready.displacement(self.threads, load)
     }
 
-    /// The answer with displacements u and forces of x.
-    pub fn with_forces(&self, u: Vec<f64>, x: &[f64]) -> Recovered {
-        let [lambda, mu, tangential] = self.forces_of_host(x);
+    /// The answer with displacements u and forces of x, the sum of `parts`: L'^-1 may leave a small difference of large x.
+    pub fn with_forces(&self, u: Vec<f64>, parts: &[&[f64]]) -> Recovered {
+        let [mut lambda, mut mu, mut tangential] = self.forces_of_host(parts[0]);
+        for x in &parts[1..] {
+            let more = self.forces_of_host(x);
+            [&mut lambda, &mut mu, &mut tangential]
+                .into_iter()
+                .zip(&more)
+                .for_each(|(sum, part)| axpy(1.0, part, sum));
+        }
         Recovered { u, lambda, mu, tangential }
     }
 

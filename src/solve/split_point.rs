@@ -113,9 +113,10 @@ impl SplitPoint {
     }
 
     /// x without the rounding of forces that are zero.
-    pub fn forces(&self, bounded: &[bool]) -> Vec<f64> {
-        let bounded = self.x.values().into_iter().zip(bounded);
-        bounded.map(|(x, bounded)| if *bounded { x.max(0.0) } else { x }).collect()
+    pub fn forces(&self, bounded: &[bool]) -> TwofoldVector {
+        let (mut x, is_rounding) = (self.x.clone(), |&i: &usize| bounded[i] && self.x.get(i) < 0.0);
+        (0..x.len()).filter(is_rounding).for_each(|i| x.set_to_zero(i));
+        x
     }
 
     /// Solves (10)-(11) on the face for the residual loads and gaps, `f - K u - B'x` and `c + C x - B u`: every
