@@ -17,6 +17,7 @@ mod last_iterations;
 mod rungs;
 mod slides;
 mod space;
+mod steps;
 mod struck_out;
 mod tied;
 mod tresca;

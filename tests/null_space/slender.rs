@@ -40,7 +40,7 @@ fn banded(a: &Csr, springs: impl Fn(usize) -> f64, b: &[f64]) -> Vec<f64> {
         d[i] = row[3];
     }
     for i in (0..n).rev() {
-        x[i] = x[i] / d[i];
+        x[i] /= d[i];
         let later: f64 = (i + 1..n.min(i + 4)).map(|j| l[j][i + 3 - j] * x[j]).sum();
         x[i] -= later;
     }
