@@ -83,7 +83,7 @@ impl End {
                 soft(vectors.columns(0..0), gap, 0.0, doubt(doubtful, false))
             }
             MotionVerdict::Indefinite => Err(Breakdown { dof, relative_pivot: *softest }.indefinite()),
-            MotionVerdict::Unclear => Err(unclear(digits).dof(dof).value(*softest)),
+            MotionVerdict::Unclear(digits) => Err(unclear(digits).dof(dof).value(*softest)),
         }
     }
 }

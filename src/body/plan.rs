@@ -200,58 +200,48 @@ impl Plan {
             self.set_analysis(symbolic);
         }
         match self {
-            Self::Known(mut known) => match known.retry.take() {
-                None => {
-                    let held = known.held().and_then(|misfit| misfit.held());
-                    let most = known.most_motions();
-                    known.execute(most).map_err(|error| {
-                        match held.filter(|_| error.kind == Kind::NullSpace) {
-                            Some(held) => Error { what: format!("{}; {held}", error.what), ..error },
-                            None => error,
-                        }
-                    })
-                }
-                Some(retry) => {
-                    let (k, misfit, limit) = (known.k.clone(), known.misfit, retry.least_softness());
-                    let pilots = known.pilots.clone();
-                    let most = match retry {
-                        Retry::Search { .. } => known.most_motions(),
-                        Retry::AllSoft(_) => known.null_space.cols,
-                    };
-                    match known.execute(most) {
-                        Ok(made) if made.inverse.softness >= limit => Ok(made),
-                        Err(error) if !retry.follows(&error, misfit) => Err(error),
-                        first => retry.execute(k, misfit, pilots, first),
+            Self::Known(mut known) => {
+                let (retry, k, pilots) = (known.retry.take(), known.k.clone(), known.pilots.clone());
+                let (misfit, held) = (known.misfit, known.held().and_then(|misfit| misfit.held()));
+                let most = match retry {
+                    Some(Retry::AllSoft(_)) => known.null_space.cols,
+                    _ => known.most_motions(),
+                };
+                let first = known.execute(most).map_err(|error| {
+                    match held.filter(|_| error.kind == Kind::NullSpace) {
+                        Some(held) => Error { what: format!("{}; {held}", error.what), ..error },
+                        None => error,
                     }
+                });
+                match retry {
+                    Some(retry) if retry.follows(&first, misfit) => retry.execute(k, misfit, pilots, first),
+                    _ => first,
                 }
-            },
+            }
             Self::Search(search) => search.execute(),
         }
     }
 }
 
 impl Retry {
-    /// A K+ that is softer than this needs the motions left out.
-    fn least_softness(&self) -> f64 {
-        match self {
-            Self::Search { .. } => 0.0,
-            Self::AllSoft(_) => PROBE,
+    /// Whether another way may succeed after this one: a K+ that is softer than `PROBE` needs motions declared soft that were left out. If
+    /// all rigid motions fit, K is not the K of other coordinates.
+    fn follows(&self, first: &Result<Factorised>, misfit: Option<Misfit>) -> bool {
+        match first {
+            Ok(made) => matches!(self, Self::AllSoft(_)) && made.inverse.softness < PROBE,
+            Err(error) => match error.kind {
+                Kind::NullSpace => true,
+                Kind::Indefinite | Kind::Internal => {
+                    !self.is_told() && misfit.is_none_or(|misfit| misfit.fit < misfit.of)
+                }
+                _ => false,
+            },
         }
     }
 
     /// The host has told how many motions float.
     fn is_told(&self) -> bool {
         matches!(self, Self::Search { floats: Some(_), .. })
-    }
-
-    /// Whether another way may succeed after `error`. If all rigid motions fit, K is not the K of other coordinates.
-    fn follows(&self, error: &Error, misfit: Option<Misfit>) -> bool {
-        match error.kind {
-            Kind::NullSpace => true,
-            Kind::Indefinite | Kind::Internal if self.is_told() => false,
-            Kind::Indefinite | Kind::Internal => misfit.is_none_or(|misfit| misfit.fit < misfit.of),
-            _ => false,
-        }
     }
 
     /// `first`: what came of the motions known.
@@ -267,7 +257,7 @@ impl Retry {
             Self::Search { tolerance, fixing, floats } => {
                 told = floats;
                 let search = Search::new(k, tolerance, fixing.as_deref())?;
-                Plan::Search(match misfit {
+                Plan::Search(match misfit.filter(|_| told.is_none()) {
                     Some(misfit) => search.instead_of(misfit),
                     None => search,
                 })

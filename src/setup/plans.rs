@@ -70,7 +70,7 @@ fn own_plan(body: &Body, k: Multiple, tolerance: f64, is_piece: bool) -> Result<
     let fixing = body.fixing.as_deref();
     if let Some(given) = &body.null_space {
         let planned = GeneralizedInverse::plan_with(k, given, tolerance, fixing)?;
-        return Ok(planned.or_search(tolerance, true));
+        return Ok(if given.modes == Modes::Soft { planned } else { planned.or_search(tolerance, true) });
     }
     let Some(coordinates) = &body.coordinates else {
         return GeneralizedInverse::search(k, tolerance, fixing);
