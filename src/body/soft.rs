@@ -56,10 +56,9 @@ pub fn soft_motions(
         // rounding of the stiffest couples the others with them
         let Resistance { noise, image } = Resistance::of(k, &r)?;
         for i in (1..r.cols).rev() {
-            let stiffness = dot(r.col(i), image.col(i));
+            let (stiffer, stiffness) = (r.col(i).to_vec(), dot(r.col(i), image.col(i)));
             for j in (0..i).filter(|_| stiffness > noise[i]) {
                 let share = dot(r.col(j), image.col(i)) / stiffness;
-                let stiffer = r.col(i).to_vec();
                 axpy(-share, &stiffer, r.col_mut(j));
             }
         }

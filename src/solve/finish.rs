@@ -140,7 +140,8 @@ impl<'a> Finish<'a, '_> {
             if rows.len() + point.alpha.len() > dense {
                 let Some(faces) = self.sparse()? else { break };
                 let Some(face) = faces.on(rows)? else { break };
-                undetermined = self.correct(&mut point, FaceSolver::Sparse(&face))?;
+                self.correct(&mut point, FaceSolver::Sparse(&face))?;
+                undetermined = face.undetermined();
             } else {
                 let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
                 let mut feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
@@ -182,8 +183,8 @@ impl<'a> Finish<'a, '_> {
     }
 
     /// Corrections on one face while each is less than half the previous one; every intermediate answer that is no worse
-    /// replaces the current one. Returns the number of motions that the face leaves open.
-    fn correct(&mut self, point: &mut SplitPoint, face: FaceSolver) -> Result<usize> {
+    /// replaces the current one.
+    fn correct(&mut self, point: &mut SplitPoint, face: FaceSolver) -> Result<()> {
         let (mut last, undetermined) = (f64::INFINITY, face.undetermined());
         for _ in 0..CORRECTIONS {
             interrupt::check()?;
@@ -194,7 +195,7 @@ impl<'a> Finish<'a, '_> {
             }
             last = size;
         }
-        Ok(undetermined)
+        Ok(())
     }
 
     fn keep(

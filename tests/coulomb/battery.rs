@@ -19,7 +19,7 @@ const PROBLEMS: u64 = 1500;
 const FIRST: u64 = 0;
 /// An answer whose worst error is beyond this part of what is there is wrong: a thousand times what the certificate allows, which
 /// has lengths of single unknowns where the judge has norms of bodies.
-const RIGHT: f64 = 1e-5;
+pub const RIGHT: f64 = 1e-5;
 /// What equality rows resist of the motion of a slide, which weak supports have shown, is below this part of it.
 const STEADY: f64 = 1e-3;
 /// Where motions can turn, what friction holds depends on how supports of different motions compare: it is known to this.

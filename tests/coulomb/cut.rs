@@ -4,30 +4,22 @@ use decks::{Deck, Rows};
 use feti_contact::error::{Kind, Result};
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::battery::{answer, seeds, sizes};
+use crate::battery::{answer, seeds, sizes, RIGHT};
 use crate::drawn::{case, Drawn};
+use crate::idle::give;
 use crate::{hand_over, judge};
 
 /// Number of problems of the ordinary run.
 const PROBLEMS: u64 = 400;
 /// Pieces of each body, about.
 const PIECES: [i64; 3] = [1, 2, 4];
-/// As in the battery.
-const RIGHT: f64 = 1e-5;
 
 /// Bodies by their elements, cut into about so many pieces each.
 fn in_pieces(drawn: &Drawn, pieces: i64) -> Result<Problem> {
     let mut problem = Problem::new();
     problem.set_i64("pieces", pieces)?;
     for (body, elements) in drawn.deck.bodies.iter().zip(&drawn.elements) {
-        let p = problem.add_body(body.dofs())?;
-        let mut ptr = vec![0];
-        elements.iter().for_each(|(dof, _)| ptr.push(ptr[ptr.len() - 1] + dof.len()));
-        let dof: Vec<i64> = elements.iter().flat_map(|(dof, _)| dof.iter().map(|j| *j as i64)).collect();
-        problem.set_mesh(p, &ptr, &dof)?;
-        for (e, (dof, k)) in elements.iter().enumerate() {
-            problem.add_element(p, e, dof.len(), k, dof.len())?;
-        }
+        let p = give(&mut problem, body.dofs(), elements)?;
         problem.set_load(p, &body.load)?;
     }
     let Deck { contact, equalities, friction, .. } = &drawn.deck;

@@ -2,33 +2,32 @@
 
 use decks::random::Random;
 use decks::{Block, Friction, Rows};
+use feti_contact::error::Result;
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
+use crate::drawn::{elements, Element};
 use crate::hand_over;
 
-/// A block in the plane, each of whose unknowns has a spring: the unknowns of its elements, and their matrices.
-fn block(random: &mut Random, elements: usize) -> (usize, Vec<(Vec<usize>, Vec<f64>)>) {
-    let block = Block { dimension: 2, elements: [elements, elements, 1], ..Block::default() };
+/// A block in the plane, each of whose unknowns has a spring: its unknowns and its elements.
+fn block(random: &mut Random, along: usize) -> (usize, Vec<Element>) {
+    let block = Block { dimension: 2, elements: [along, along, 1], ..Block::default() };
     let unknowns = 2 * block.nodes();
-    let of = |e: usize| {
-        let low = block.low(e);
-        let corners = (0..4).map(|c| block.node([low[0] + (c & 1), low[1] + (c >> 1), 0]));
-        (corners.flat_map(|node| [2 * node, 2 * node + 1]).collect(), block.element())
-    };
-    let mut all: Vec<_> = (0..block.volume()).map(of).collect();
+    let mut all = elements(&block);
     all.extend((0..unknowns).map(|j| (vec![j], vec![random.decades(-2.0, 0.0)])));
     (unknowns, all)
 }
 
-fn give(problem: &mut Problem, (unknowns, elements): &(usize, Vec<(Vec<usize>, Vec<f64>)>)) {
-    let body = problem.add_body(*unknowns).unwrap();
+/// Adds a body by its elements.
+pub fn give(problem: &mut Problem, unknowns: usize, elements: &[Element]) -> Result<usize> {
+    let body = problem.add_body(unknowns)?;
     let mut ptr = vec![0];
     elements.iter().for_each(|(dof, _)| ptr.push(ptr[ptr.len() - 1] + dof.len()));
     let dof: Vec<i64> = elements.iter().flat_map(|(dof, _)| dof.iter().map(|j| *j as i64)).collect();
-    problem.set_mesh(body, &ptr, &dof).unwrap();
+    problem.set_mesh(body, &ptr, &dof)?;
     for (e, (dof, k)) in elements.iter().enumerate() {
-        problem.add_element(body, e, dof.len(), k, dof.len()).unwrap();
+        problem.add_element(body, e, dof.len(), k, dof.len())?;
     }
+    Ok(body)
 }
 
 #[test]
@@ -58,7 +57,9 @@ fn a_cut_body_without_load_rests_whatever_its_friction_may_hold() {
         for pieces in [1, 2, 3] {
             let mut problem = Problem::new();
             problem.set_i64("pieces", pieces).unwrap();
-            bodies.iter().for_each(|body| give(&mut problem, body));
+            for (unknowns, elements) in &bodies {
+                give(&mut problem, *unknowns, elements).unwrap();
+            }
             [2, 3].iter().zip(&loads).for_each(|(&p, load)| problem.set_load(p, load).unwrap());
             problem.set_text("dual_operator=explicit direct_limit=0").unwrap();
             hand_over::add_rows(&mut problem, RowKind::Inequality, &contact).unwrap();

@@ -8,7 +8,7 @@ mod node;
 use decks::random::Random;
 use decks::{Deck, Friction, Rows};
 
-pub use body::Element;
+pub use body::{elements, Element};
 
 use body::Drawing;
 use node::{Contact, State};
