@@ -33,12 +33,10 @@ rungs! {
     PullAll: "all pulling", "P9: all rows with a negative multiplier leave at once, before P10";
     Reference: "last motions", "P10: free motions of the last gradient projection";
     Faces: "faces", "S10: faces by the data of the host where the iteration gives up";
-    Interior: "interior point", "S13.6: faces from an interior point, dense";
-    InteriorSparse: "interior point, sparse", "S13.6: the same with sparse factors";
+    Interior: "interior point", "S13.6: faces from an interior point";
     AllRows: "all rows", "S13: the face with rows that nearly depend on others";
     Again: "again", "S10: the iteration again from an interior point";
     Slides: "slides", "S12: resistance that is noise is taken out";
-    Leaves: "left load", "S12: what forces then leave of the load is taken out";
     Relative: "relative shares", "S11: unheld parts by shares of each body";
     FarRows: "far rows", "S5.2: far rows join because no answer passes";
     Rough: "rough round", "S7: a rough first round with negative stiffness";

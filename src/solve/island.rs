@@ -66,10 +66,6 @@ enum Tried {
     NotHeld {
         far: Vec<bool>,
     },
-    /// The answer of the cleaned G': by the host's rows its forces leave a small part of the load along the motions that rest.
-    Leaves {
-        x: Vec<f64>,
-    },
 }
 
 /// Solves (10)-(11) on island `number`: the dual from x = `start`, the displacements, the certificate. If there is no
@@ -117,15 +113,6 @@ fn solve_held(
                 dual = scaled(case)?;
                 dual.cleaned = Some(cleaned);
                 start = x;
-            }
-            Tried::Leaves { x } => {
-                let rest = dual.left_by(case.ready, &x);
-                let left = Unheld::of(&case.data()?, case.ready, &dual, x, &rest);
-                // a body without load has no share of its own
-                let share = left.share.min(case.model.accuracy_of_coordinates());
-                dual.take(case, &left.x, Some(&left.load), share)?;
-                dual.excused = true;
-                start = left.x;
             }
             Tried::NotHeld { far } => {
                 let least = interrupt::part(DIAGNOSIS, || Unheld::least(case, &dual, &far))?;
@@ -196,10 +183,6 @@ fn attempt(
         if let Some(cleaned) = cleaned.filter(|_| Rung::Slides.is_tried()) {
             return Ok(Tried::Slides { cleaned, x: ending.solution.x, below: accuracy.data });
         }
-    }
-    let is_refused = !ending.judgement.certificate.passed();
-    if goes_on && dual.cleaned.is_some() && !dual.excused && is_refused && Rung::Leaves.is_tried() {
-        return Ok(Tried::Leaves { x: ending.solution.x });
     }
     let is_solved = ending.solution.verdict == Verdict::Solved;
     let finished = is_solved

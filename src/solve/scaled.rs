@@ -25,8 +25,6 @@ pub struct Scaled {
     pub cleaned: Option<Csr>,
     /// The motion along which forces leave a part of the load, amplitudes over the modes of the dual; empty if there is none.
     pub along: Vec<f64>,
-    /// What these rows leave of the load has been removed from the loads.
-    pub excused: bool,
 }
 
 /// Loads without the part that nothing holds.
@@ -43,17 +41,7 @@ impl Scaled {
     pub fn new(ready: &Ready, load: Vec<f64>, moved: Vec<Vec<f64>>, gaps: Gaps) -> Self {
         let d = ready.dual.rhs(&moved, &gaps.dual);
         let resultants = ready.dual.resultants(&load);
-        Self {
-            load,
-            gaps,
-            moved,
-            d,
-            resultants,
-            unheld: None,
-            cleaned: None,
-            along: Vec::new(),
-            excused: false,
-        }
+        Self { load, gaps, moved, d, resultants, unheld: None, cleaned: None, along: Vec::new() }
     }
 
     /// Removes the part of the loads that forces x of the dual leave and of which nothing holds a `share`: `left`, in
@@ -78,13 +66,6 @@ impl Scaled {
     /// G'
     fn coarse<'a>(&'a self, ready: &'a Ready) -> &'a Csr {
         self.cleaned.as_ref().unwrap_or(&ready.dual.coarse)
-    }
-
-    /// `e - G x`, by the rows of the host.
-    pub fn left_by(&self, ready: &Ready, x: &[f64]) -> Vec<f64> {
-        let mut left = ready.dual.resultants(&self.load);
-        ready.dual.coarse.mul_transposed_add(-1.0, x, &mut left);
-        left
     }
 
     pub fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
