@@ -39,9 +39,7 @@ rungs! {
     Slides: "slides", "S12: resistance that is noise is taken out";
     Relative: "relative shares", "S11: unheld parts by shares of each body";
     FarRows: "far rows", "S5.2: far rows join because no answer passes";
-    Rough: "rough round", "S7: a rough first round with negative stiffness";
     Trial: "trial", "S7: Newton steps between rounds";
-    Back: "back", "S7: back to the last round after a trial";
     Mend: "mended", "S7.6: an answer of a round is corrected";
     FirstProof: "first proof", "S7: loads that fall without end, in a round without an answer";
     Finish: "finish", "S13: delicate answers are corrected";

@@ -33,8 +33,6 @@ pub struct Assumed {
     pub far: Vec<bool>,
     /// Amplitudes of the motions with negative stiffness from which e was computed.
     pub amplitudes: Vec<f64>,
-    /// The end point is only the start of another run.
-    pub is_rough: bool,
     /// Amplitudes must have settled, even if the certificate passes.
     pub is_strict: bool,
 }
@@ -142,10 +140,6 @@ impl AcceptanceTest for Certifier<'_> {
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
-        if self.assumed.is_rough {
-            self.accepted = None;
-            return Ok(true);
-        }
         interrupt::check()?;
         let begun = Instant::now();
         self.judged = self.judge(x, alpha)?;

@@ -10,12 +10,11 @@
 //! p - b)`. The largest eigenvalue rho of P is below 1 exactly if K is positive definite along the rows F. Otherwise the
 //! energy falls along a motion that keeps F closed: the next round begins where another row stops that motion; if no row
 //! stops it, the energy has no minimum. The energy of the answers falls from round to round, except in the Newton step,
-//! which ignores open rows; if the energy has risen, the previous answer moves along that step only as far as open rows
-//! allow. If the face is too large for dense factors, the rounds continue without Newton steps and converge at the rate
-//! rho.
+//! which ignores open rows: if the energy has risen, the previous answer is followed without it. If the face is too large
+//! for dense factors, the rounds continue without Newton steps and converge at the rate rho.
 
 use crate::error::{Error, Kind, Proof, Result};
-use crate::linalg::vector::{axpy, dot, norm, NOISE};
+use crate::linalg::vector::{axpy, dot, NOISE};
 use crate::qp::friction::unheld;
 use crate::qp::{Qp, Rung, Solution, Verdict};
 use crate::solve::case::Case;
@@ -34,8 +33,6 @@ const STRICT: usize = 2;
 const STRICT_ALONE: usize = 20;
 /// After this number of Newton rounds on one face, only rounding is left between the rounds.
 const MENDED: usize = 4;
-/// With friction, a trial is given up if it goes beyond the last round by less than this part of its change.
-const SHORT: f64 = 0.1;
 /// Two energies are equal if they differ by less than this part of their terms.
 const SAME: f64 = 1e-9;
 
@@ -55,11 +52,10 @@ struct Round<'a> {
     /// `S-^1/2 a`, and its difference from b of the round.
     next: Vec<f64>,
     change: Vec<f64>,
-    /// What falls from round to round: `1/2 u'K u - f'u` up to a constant or, with friction, which has no energy, |change|.
-    /// And the size of its terms.
+    /// What falls from round to round: `1/2 u'K u - f'u` up to a constant, and the size of its terms. With friction, which has no
+    /// energy, 0: no round is above another.
     energy: f64,
     terms: f64,
-    is_rough: bool,
     /// None if the face is too large for dense factors.
     feedback: Option<Feedback<'a>>,
 }
@@ -111,9 +107,14 @@ impl Known<'_> {
 }
 
 impl Round<'_> {
+    /// The next step without Newton's method.
+    fn followed(&self) -> Step {
+        Step { b: self.next.clone(), x: self.x.clone(), is_trial: false }
+    }
+
     /// The energy of this round is above that of `other`.
     fn is_above(&self, other: &Round) -> bool {
-        !other.is_rough && self.energy > other.energy + SAME * (self.terms + other.terms)
+        self.energy > other.energy + SAME * (self.terms + other.terms)
     }
 }
 
@@ -124,13 +125,13 @@ impl<'a> Search<'a, '_> {
         known: &mut Known<'a>,
         step: &Step,
         found: (&Solution, Vec<bool>),
-        (unsettled, is_rough): (bool, bool),
+        unsettled: bool,
     ) -> Result<Next> {
-        let round = Round { is_rough, ..self.round(step, found)? };
+        let round = self.round(step, found)?;
         known.rounds += 1;
         let is_same = known.last.as_ref().is_some_and(|last| last.held == round.held);
         known.same = if is_same { known.same + 1 } else { 0 };
-        let falling = self.falling(&round, known.last.as_ref().filter(|_| is_same))?;
+        let falling = self.falling(&round, known.last.as_ref().filter(|_| is_same), unsettled)?;
         match &falling {
             Some((motion, rate)) if !unsettled => return Err(indefinite(self.case, &motion.v, *rate)?),
             _ if !unsettled => return Ok(Next::End(Verdict::Solved)),
@@ -141,13 +142,16 @@ impl<'a> Search<'a, '_> {
             _ => {}
         }
         if let Some(last) = known.last.as_ref().filter(|last| step.is_trial && round.is_above(last)) {
-            return Ok(Next::Step(self.back(last, &step.b)?));
+            return Ok(Next::Step(last.followed()));
         }
-        let next = match falling {
-            Some((motion, rate)) => self.along(&round, &motion, rate)?,
-            None => self.settled(&round)?,
+        let (next, is_to_mend) = match falling {
+            Some((motion, rate)) => (self.along(&round, &motion, rate)?, false),
+            None => {
+                let next = self.settled(&round, known.same)?;
+                let is_to_mend = self.recovery.friction || next.is_trial && known.same == MENDED;
+                (next, is_to_mend)
+            }
         };
-        let is_to_mend = next.is_trial && (known.same == MENDED || self.recovery.friction);
         known.last = Some(round);
         Ok(if is_to_mend { Next::Mend(next) } else { Next::Step(next) })
     }
@@ -162,15 +166,12 @@ impl<'a> Search<'a, '_> {
             .recovery
             .held_with_friction(&self.displacements(&solution.x, &solution.alpha)?, &solution.x)?;
         let round = self.round(step, (solution, held))?;
-        Ok(self.falling(&round, None)?.is_none())
+        Ok(self.falling(&round, None, false)?.is_none())
     }
 
     /// What follows a round without an answer: no forces balance its load if the energy falls without end.
     pub fn without_answer(&self, known: &mut Known<'a>, step: &Step, solution: &Solution) -> Result<Next> {
         known.rounds += 1;
-        if let (Some(last), true) = (&known.last, step.is_trial && self.recovery.friction) {
-            return Ok(Next::Step(self.back(last, &step.b)?));
-        }
         if matches!(solution.verdict, Verdict::Infeasible { .. }) && Rung::FirstProof.is_tried() {
             let e = self.negative.resultants(self.qp.e, &step.b);
             if let Some(motion) = self.unstopped(Qp { e: &e, ..self.qp }, &solution.x)? {
@@ -180,8 +181,8 @@ impl<'a> Search<'a, '_> {
         match &known.last {
             _ if known.rounds == 1 => Ok(Next::End(solution.verdict.clone())),
             _ if known.rounds >= ROUNDS || !step.is_trial => Ok(Next::End(Verdict::Stalled)),
-            Some(last) if !last.is_rough => Ok(Next::Step(self.back(last, &step.b)?)),
-            _ => Ok(Next::Step(Step::first(self.negative, solution.x.clone()))),
+            Some(last) => Ok(Next::Step(last.followed())),
+            None => Ok(Next::Step(Step::first(self.negative, solution.x.clone()))),
         }
     }
 
@@ -200,31 +201,26 @@ impl<'a> Search<'a, '_> {
         let next: Vec<f64> = self.negative.forced(alpha);
         let change = minus(&next, &step.b);
         let parts = match self.recovery.friction {
-            true => vec![norm(&change)],
+            true => [0.0; 4],
             false => {
-                let dual = [0.5 * dot(self.qp.b, x), -0.5 * dot(self.qp.e, alpha)];
-                [dual, [0.5 * dot(&next, &step.b), -0.5 * dot(&next, &next)]].concat()
+                let of_motions = [0.5 * dot(&next, &step.b), -0.5 * dot(&next, &next)];
+                [0.5 * dot(self.qp.b, x), -0.5 * dot(self.qp.e, alpha), of_motions[0], of_motions[1]]
             }
         };
         let energy = parts.iter().sum::<f64>();
         let terms = parts.iter().map(|part| part.abs()).sum::<f64>();
         let feedback = Feedback::of(self.means.direct, self.qp, &held, self.negative)?;
-        Ok(Round {
-            x: x.clone(),
-            alpha: alpha.clone(),
-            held,
-            next,
-            change,
-            energy,
-            terms,
-            is_rough: false,
-            feedback,
-        })
+        Ok(Round { x: x.clone(), alpha: alpha.clone(), held, next, change, energy, terms, feedback })
     }
 
     /// A motion along which the energy falls while the rows of the face stay closed, and its rate; `last` had the same
-    /// face.
-    fn falling(&self, round: &Round, last: Option<&Round>) -> Result<Option<(Sliding, f64)>> {
+    /// face. While the amplitudes are `unsettled` only their change leads downhill: slips that allow only the other sense allow none.
+    fn falling(
+        &self,
+        round: &Round,
+        last: Option<&Round>,
+        unsettled: bool,
+    ) -> Result<Option<(Sliding, f64)>> {
         let found = match self.negative.free(self.qp, &round.held)? {
             Some(alpha) => Some((vec![0.0; round.x.len()], alpha, f64::INFINITY)),
             None => match (&round.feedback, last) {
@@ -245,7 +241,7 @@ impl<'a> Search<'a, '_> {
         }
         if self.recovery.friction && !motion.slips_on(self.recovery, &round.x, &round.held) {
             motion.turn();
-            if !motion.slips_on(self.recovery, &round.x, &round.held) {
+            if unsettled || !motion.slips_on(self.recovery, &round.x, &round.held) {
                 return Ok(None);
             }
         }
@@ -261,38 +257,21 @@ impl<'a> Search<'a, '_> {
         Ok(self.moved(round, motion, reach))
     }
 
-    /// The next step: the Newton step to the fixed point of the face.
-    fn settled(&self, round: &Round) -> Result<Step> {
-        let feedback = round.feedback.as_ref().filter(|feedback| feedback.rate() < 1.0);
-        let Some(feedback) = feedback.filter(|_| Rung::Trial.is_tried()) else {
-            return Ok(Step { b: round.next.clone(), x: round.x.clone(), is_trial: false });
-        };
+    /// The next step: the Newton step to the fixed point of the face. If the answers move away from it, each of the steps of `same`
+    /// rounds on one face is twice the last.
+    fn settled(&self, round: &Round, same: usize) -> Result<Step> {
+        let mut next = round.followed();
+        let Some(feedback) = &round.feedback else { return Ok(next) };
+        if feedback.rate() >= 1.0 {
+            axpy(2f64.powi(same as i32) - 1.0, &round.change, &mut next.b);
+        }
+        if feedback.rate() >= 1.0 || !Rung::Trial.is_tried() {
+            return Ok(next);
+        }
         let b = feedback.settled(&round.next, &round.change);
         let (x, _) = feedback.point(self.qp, &self.negative.resultants(self.qp.e, &b))?;
         let x = (0..x.len()).map(|i| if self.qp.bounded[i] { x[i].max(0.0) } else { x[i] }).collect();
         Ok(Step { b, x, is_trial: true })
-    }
-
-    /// The Newton step of [`settled`](Self::settled), shortened so that open rows stay open; with friction, half of what the
-    /// trial `failed` went beyond the amplitudes of the round.
-    fn back(&self, round: &Round, failed: &[f64]) -> Result<Step> {
-        let plain = Step { b: round.next.clone(), x: round.x.clone(), is_trial: false };
-        if !Rung::Back.is_tried() {
-            return Ok(plain);
-        }
-        if self.recovery.friction {
-            let b: Vec<f64> = round.next.iter().zip(failed).map(|(next, b)| 0.5 * (next + b)).collect();
-            let is_trial = norm(&minus(&b, &round.next)) > SHORT * norm(&round.change);
-            return Ok(if is_trial { Step { b, is_trial, ..plain } } else { plain });
-        }
-        let Some(feedback) = &round.feedback else { return Ok(plain) };
-        let b = feedback.settled(&round.next, &round.change);
-        let (mut x, mut alpha) = feedback.point(self.qp, &self.negative.resultants(self.qp.e, &b))?;
-        axpy(-1.0, &round.x, &mut x);
-        axpy(-1.0, &round.alpha, &mut alpha);
-        let motion = Sliding::of(self.recovery, x, alpha)?;
-        let reach = motion.reach(self.recovery, &self.displacements(&round.x, &round.alpha)?, &round.held);
-        Ok(self.moved(round, &motion, reach.min(1.0)))
     }
 
     fn moved(&self, round: &Round, motion: &Sliding, by: f64) -> Step {

@@ -2,7 +2,6 @@
 //! the motions of negative stiffness. Rows that the answer reaches join first, then the amplitudes follow.
 
 use crate::error::Result;
-use crate::model::Settings;
 use crate::progress::Steps;
 use crate::qp::{
     AcceptanceTest, Counts, DirectOnRows, Judged as OnRows, Mended, Qp, Restricted, Rung, Solution, Verdict,
@@ -16,9 +15,6 @@ use crate::solve::near::{self, Near};
 use crate::solve::negative::{Known, Next, Search, Step};
 use crate::solve::recovery::Recovery;
 
-/// `tolerance` of the first round if others follow: it only has to find the active rows.
-const ROUGH: f64 = 1e-5;
-
 /// Solves the dual of (10)-(11); the forces of the rows left out are 0.
 pub fn solve_in_rounds<'a>(
     case: Case<'a>,
@@ -29,26 +25,19 @@ pub fn solve_in_rounds<'a>(
     steps: &mut Steps,
 ) -> Result<Solution> {
     let negative = NegativeMotions::of(case.ready);
-    let rough = Settings { tolerance: means.settings.tolerance.max(ROUGH), ..means.settings.clone() };
     let rounds = Rounds { case, means, qp, negative: &negative };
     let (mut near, mut known) = (Near::new(case, judge.recovery.scaled), Known::default());
     let (mut step, mut counts, mut last) =
         (Step::first(&negative, start.to_vec()), Counts::default(), None::<Solution>);
     loop {
-        let is_rough = !negative.modes.is_empty()
-            && known.rounds == 0
-            && means.direct.limit > 0
-            && Rung::Rough.is_tried();
         judge.judged = Judged::default();
         judge.assumed = Assumed {
             far: near.far.clone(),
             amplitudes: negative.amplitudes(&step.b),
-            is_rough,
             is_strict: known.is_strict(),
         };
-        let with = MethodOptions { settings: if is_rough { &rough } else { means.settings }, ..*means };
         let e = negative.resultants(qp.e, &step.b);
-        let found = run(case, &with, Qp { e: &e, ..qp }, &near.rows(), &step.x, judge, steps);
+        let found = run(case, means, Qp { e: &e, ..qp }, &near.rows(), &step.x, judge, steps);
         if found.as_ref().is_err_and(|error| near.may_stop(error)) {
             continue;
         }
@@ -69,14 +58,11 @@ pub fn solve_in_rounds<'a>(
         if negative.modes.is_empty() {
             return Ok(solution);
         }
-        let unsettled = is_rough || judge.judged == Judged::AmplitudesMoved;
+        let unsettled = judge.judged == Judged::AmplitudesMoved;
         let next = match &solution.verdict {
-            Verdict::Solved => rounds.search(&judge.recovery).after(
-                &mut known,
-                &step,
-                (&solution, held),
-                (unsettled, is_rough),
-            ),
+            Verdict::Solved => {
+                rounds.search(&judge.recovery).after(&mut known, &step, (&solution, held), unsettled)
+            }
             _ => rounds.search(&judge.recovery).without_answer(&mut known, &step, &solution),
         };
         step = match next {

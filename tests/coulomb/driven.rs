@@ -185,7 +185,7 @@ fn pressed_blocks_with_negative_stiffness_rest_or_are_proved_not_to() {
                 let (error, what) = judge::worst(&deck, &answer(&problem));
                 ("OK".to_owned(), (!(error <= RIGHT)).then(|| format!("{what}: {error:e}")))
             }
-            // pushed off their middle, some slide
+            // pushed off their middle, some slide; nothing else is right
             Ok(report) => (format!("{:?}", report.outcome), None),
             Err(error) => (format!("{:?}", error.kind), (!proves(&deck, &error)).then(|| error.to_string())),
         };
@@ -195,7 +195,7 @@ fn pressed_blocks_with_negative_stiffness_rest_or_are_proved_not_to() {
     println!("{counts:?}\n{}", lines.join("\n"));
     assert!(lines.is_empty(), "{counts:?}\n{}", lines.join("\n"));
     let of = |end: &str| counts.get(end).copied().unwrap_or(0) as u64;
-    assert!(of("OK") > all / 2 && 200 * of("Stalled") <= all, "{counts:?}");
+    assert!(of("OK") > all / 2 && of("OK") + of("Indefinite") + of("Slides") == all, "{counts:?}");
 }
 
 /// The same blocks without friction: nothing holds the push. The reason was once negative stiffness along a motion whose v'K v is rounding.
