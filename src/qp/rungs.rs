@@ -33,7 +33,8 @@ rungs! {
     PullAll: "all pulling", "P9: all rows with a negative multiplier leave at once, before P10";
     Reference: "last motions", "P10: free motions of the last gradient projection";
     Faces: "faces", "S10: faces by the data of the host where the iteration gives up";
-    Interior: "interior point", "S13.6: faces from an interior point";
+    Interior: "interior point", "S13.6: faces from an interior point, dense";
+    InteriorSparse: "interior point, sparse", "S13.6: the same with sparse factors";
     AllRows: "all rows", "S13: the face with rows that nearly depend on others";
     Again: "again", "S10: the iteration again from an interior point";
     Slides: "slides", "S12: resistance that is noise is taken out";

@@ -93,7 +93,8 @@ struct Finish<'a, 'b> {
 }
 
 impl<'a> Finish<'a, '_> {
-    /// Active sets from that of the answer on; if none of them has an answer that passes, from that of an interior point on.
+    /// Active sets from that of the answer on; if none of them has an answer that passes, from that of an interior point on, by
+    /// dense factors, then by sparse ones.
     fn run(&mut self, inside: bool) -> Result<()> {
         let Faces { qp, direct } = &self.recovery.faces;
         let point = SplitPoint::of(self.recovery, self.ending, if self.delicate { 1.0 } else { FAR })?;
@@ -106,8 +107,11 @@ impl<'a> Finish<'a, '_> {
         }
         let Some(faces) = self.sparse()? else { return Ok(()) };
         let Some((active, inside)) = faces.inside(self.recovery)? else { return Ok(()) };
-        if Rung::Interior.is_tried() {
-            self.follow(active, SplitPoint::inside(self.recovery, &inside), direct.limit)?;
+        for dense in [direct.limit, 0] {
+            let rung = if dense > 0 { Rung::Interior } else { Rung::InteriorSparse };
+            if !self.passes() && rung.is_tried() {
+                self.follow(active.clone(), SplitPoint::inside(self.recovery, &inside), dense)?;
+            }
         }
         self.done.inside = (!self.passes()).then_some(inside.force);
         Ok(())
