@@ -52,8 +52,7 @@ struct Round<'a> {
     /// `S-^1/2 a`, and its difference from b of the round.
     next: Vec<f64>,
     change: Vec<f64>,
-    /// What falls from round to round: `1/2 u'K u - f'u` up to a constant, and the size of its terms. With friction, which has no
-    /// energy, 0: no round is above another.
+    /// What falls from round to round without friction: `1/2 u'K u - f'u` up to a constant, and the size of its terms.
     energy: f64,
     terms: f64,
     /// None if the face is too large for dense factors.
@@ -141,17 +140,17 @@ impl<'a> Search<'a, '_> {
             _ if known.rounds >= ROUNDS => return Ok(Next::End(Verdict::Stalled)),
             _ => {}
         }
-        if let Some(last) = known.last.as_ref().filter(|last| step.is_trial && round.is_above(last)) {
+        // with friction there is no energy
+        let judges = step.is_trial && !self.recovery.friction;
+        if let Some(last) = known.last.as_ref().filter(|last| judges && round.is_above(last)) {
             return Ok(Next::Step(last.followed()));
         }
-        let (next, is_to_mend) = match falling {
-            Some((motion, rate)) => (self.along(&round, &motion, rate)?, false),
-            None => {
-                let next = self.settled(&round, known.same)?;
-                let is_to_mend = self.recovery.friction || next.is_trial && known.same == MENDED;
-                (next, is_to_mend)
-            }
+        let next = match &falling {
+            Some((motion, rate)) => self.along(&round, motion, *rate)?,
+            None => self.settled(&round, known.same)?,
         };
+        let is_to_mend =
+            falling.is_none() && (self.recovery.friction || next.is_trial && known.same == MENDED);
         known.last = Some(round);
         Ok(if is_to_mend { Next::Mend(next) } else { Next::Step(next) })
     }
@@ -200,13 +199,8 @@ impl<'a> Search<'a, '_> {
         let Solution { x, alpha, .. } = solution;
         let next: Vec<f64> = self.negative.forced(alpha);
         let change = minus(&next, &step.b);
-        let parts = match self.recovery.friction {
-            true => [0.0; 4],
-            false => {
-                let of_motions = [0.5 * dot(&next, &step.b), -0.5 * dot(&next, &next)];
-                [0.5 * dot(self.qp.b, x), -0.5 * dot(self.qp.e, alpha), of_motions[0], of_motions[1]]
-            }
-        };
+        let parts = [dot(self.qp.b, x), -dot(self.qp.e, alpha), dot(&next, &step.b), -dot(&next, &next)]
+            .map(|part| 0.5 * part);
         let energy = parts.iter().sum::<f64>();
         let terms = parts.iter().map(|part| part.abs()).sum::<f64>();
         let feedback = Feedback::of(self.means.direct, self.qp, &held, self.negative)?;
@@ -254,7 +248,9 @@ impl<'a> Search<'a, '_> {
         if reach.is_infinite() {
             return Err(indefinite(self.case, &motion.v, rate)?);
         }
-        Ok(self.moved(round, motion, reach))
+        let mut next = round.followed();
+        axpy(reach, &self.negative.forced(&motion.alpha), &mut next.b);
+        Ok(next)
     }
 
     /// The next step: the Newton step to the fixed point of the face. If the answers move away from it, each of the steps of `same`
@@ -264,20 +260,15 @@ impl<'a> Search<'a, '_> {
         let Some(feedback) = &round.feedback else { return Ok(next) };
         if feedback.rate() >= 1.0 {
             axpy(2f64.powi(same as i32) - 1.0, &round.change, &mut next.b);
+            return Ok(next);
         }
-        if feedback.rate() >= 1.0 || !Rung::Trial.is_tried() {
+        if !Rung::Trial.is_tried() {
             return Ok(next);
         }
         let b = feedback.settled(&round.next, &round.change);
         let (x, _) = feedback.point(self.qp, &self.negative.resultants(self.qp.e, &b))?;
         let x = (0..x.len()).map(|i| if self.qp.bounded[i] { x[i].max(0.0) } else { x[i] }).collect();
         Ok(Step { b, x, is_trial: true })
-    }
-
-    fn moved(&self, round: &Round, motion: &Sliding, by: f64) -> Step {
-        let mut b = round.next.clone();
-        axpy(by, &self.negative.forced(&motion.alpha), &mut b);
-        Step { b, x: round.x.clone(), is_trial: false }
     }
 
     fn displacements(&self, x: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {

@@ -79,7 +79,7 @@ impl Unheld {
     }
 
     /// For the forces x of the dual, which leave `rest` = e - G x.
-    pub fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
+    fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
         let (island, metric) = (&ready.island, &ready.rows.metric);
         let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, island.unknowns(), metric);
         let sizes = |load: &[f64]| -> Vec<f64> {
