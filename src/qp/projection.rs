@@ -28,9 +28,6 @@ const STAGNATED: f64 = 1e-10;
 /// Limit of the residual relative to `|e| + |G||y|`: if nothing balances e, forces grow until their rounding hides the
 /// residual.
 const MET: f64 = 1e-6;
-/// If `|e - G l|` exceeds this part of `|e| + |G||l|`, the start without bounds is also tried.
-const FAR: f64 = 0.5;
-
 /// A sum is zero if it is below this part of its terms: if the bounds leave only one point, all rows must reach them.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -101,13 +98,6 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         return Ok(Some(Projected { point: now.point, multiplier: now.beta }));
     }
     let mut error = now.error(qp, coarse);
-    if error > FAR && Rung::NoBounds.is_tried() {
-        let beta = target.without_bounds(coarse)?;
-        let next = Trial::new(target, coarse, beta);
-        if next.phi(qp) < now.phi(qp) {
-            (error, now) = (next.error(qp, coarse), next);
-        }
-    }
     let given = norm(qp.e) + norm(&coarse.terms(y));
     let is_met = |now: &Trial| norm(&now.residual) <= MET * given;
     let (mut cuts, mut step, mut end) = (0, 0, NEWTON_STEPS);
@@ -125,10 +115,15 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
                 (error, now) = (next.error(qp, coarse), next);
             }
         }
-        // J3: Newton
-        let face: Vec<bool> =
-            (0..y.len()).map(|i| held[i] || (qp.bounded[i] && now.point[i] <= 0.0)).collect();
-        let direction = coarse.on(&face)?.solve_regularised(&now.residual)?;
+        // J3: Newton; the first step on all rows that y does not put beyond their bound, since forces that add up over many
+        // bodies would enter one row after the other from 0
+        let leaves = |i: usize| now.point[i] <= 0.0 && (step > 0 || y[i] < 0.0);
+        let face: Vec<bool> = (0..y.len()).map(|i| held[i] || (qp.bounded[i] && leaves(i))).collect();
+        let mut on_face = coarse.on(&face)?;
+        let direction = match face == held {
+            true => on_face.solve(&now.residual)?,
+            false => on_face.solve_regularised(&now.residual)?,
+        };
         let Some(t) = target.minimum_along(coarse, &now, &direction) else {
             return if error <= STAGNATED && is_met(&now) {
                 now.done(qp, coarse).map(Some)
@@ -150,13 +145,6 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
 }
 
 impl Target<'_> {
-    /// J1: the multiplier without bounds, since forces that add up over many bodies would enter one row after the other from 0.
-    fn without_bounds(&self, coarse: &mut Coarse) -> Result<Vec<f64>> {
-        let free = self.y.iter().zip(self.held).map(|(y, held)| if *held { 0.0 } else { *y });
-        let left = coarse.left(self.qp.e, &free.collect::<Vec<f64>>());
-        coarse.on(self.held)?.solve(&left)
-    }
-
     /// J3: exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and nondecreasing, with the slope
     /// `sum (G'step)_i^2` over the rows that are not at their bound. `None`: phi decreases without end.
     fn minimum_along(&self, coarse: &Coarse, now: &Trial, step: &[f64]) -> Option<f64> {

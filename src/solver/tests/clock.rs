@@ -149,10 +149,9 @@ fn parts_that_take_long_say_how_far_they_are_and_the_longer_they_take_the_more_s
     for (deck, part, of) in [
         (masonry::wall(4, 1e-4), "first feasible point", "Newton steps of a projection"),
         (masonry::wall(4, 1e-4), "dual solve", "Newton steps of a projection"),
-        (pushed_aside(masonry::wall(3, 0.0)), "first feasible point", "rows admitted to a nearest point"),
-        (pushed_aside(masonry::chain(501)), "first feasible point", "steps into the interior"),
+        (masonry::heap(60, 3), "dual solve", "steps into the interior"),
         (
-            pushed_aside(masonry::wall(6, 0.0)),
+            pushed_aside(masonry::wall(3, 0.0)),
             "forces nearest to the load",
             "rows admitted to a nearest point",
         ),
