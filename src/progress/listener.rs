@@ -25,6 +25,25 @@ pub struct Progress {
     pub seconds: f64,
 }
 
+impl Progress {
+    /// A report of a setup of which this fraction is complete.
+    pub fn of_setup(fraction: f64, seconds: f64) -> Self {
+        let [residual, free, chopped, theta] = [f64::NAN; 4];
+        Self {
+            step: None,
+            fraction,
+            steps: 0,
+            products: 0,
+            active: 0,
+            residual,
+            free,
+            chopped,
+            theta,
+            seconds,
+        }
+    }
+}
+
 /// The answer of the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reply {

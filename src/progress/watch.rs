@@ -11,7 +11,6 @@ use crate::progress::log::{Log, LogLevel};
 use crate::progress::phases::Phases;
 use crate::progress::steps::{Told, Voice};
 use crate::progress::stops::{from_now, Stops};
-use crate::qp::Counts;
 
 /// The host's functions and its request to cancel, kept between calls.
 #[derive(Default)]
@@ -35,7 +34,7 @@ impl Host {
         let clock = self.clock.clone().unwrap_or_else(from_now);
         let stops = Stops::new(self.canceller(), limit, clock);
         let (listener, log) = (self.listener.take(), std::mem::take(&mut self.log));
-        Watch { stops, listener, log, phases, fraction: 0.0, islands: Vec::new() }
+        Watch { stops, listener, log, phases, fraction: 0.0, islands: Vec::new(), all: [0; 3] }
     }
 
     /// Ends the call: takes back its listeners and returns its phases.
@@ -71,8 +70,9 @@ pub struct Watch {
     pub phases: Phases,
     /// Completed part of the setup.
     fraction: f64,
-    /// Work of every island so far, and number of its rows with a force.
-    islands: Vec<(Counts, usize)>,
+    /// Steps, products and rows with a force of every island so far, and of all together.
+    islands: Vec<[usize; 3]>,
+    all: [usize; 3],
 }
 
 impl Voice for Watch {
@@ -80,13 +80,11 @@ impl Voice for Watch {
         if self.islands.len() <= told.island {
             self.islands.resize(told.island + 1, Default::default());
         }
-        self.islands[told.island] = (told.counts, told.progress.active);
-        let mut now = Progress { steps: 0, products: 0, active: 0, ..told.progress };
-        for (counts, active) in &self.islands {
-            now.steps += counts.steps();
-            now.products += counts.products;
-            now.active += active;
-        }
+        let now = [told.counts.steps(), told.counts.products, told.progress.active];
+        let before = std::mem::replace(&mut self.islands[told.island], now);
+        self.all = std::array::from_fn(|k| self.all[k] + now[k] - before[k]);
+        let [steps, products, active] = self.all;
+        let now = Progress { steps, products, active, ..told.progress };
         self.tell(&now)?;
         self.log.step(&now)
     }
@@ -139,18 +137,7 @@ impl Watch {
 
     /// Reports to the host the completed part of the setup.
     fn part_done(&mut self) -> Result<()> {
-        self.tell(&Progress {
-            step: None,
-            fraction: self.fraction,
-            steps: 0,
-            products: 0,
-            active: 0,
-            residual: f64::NAN,
-            free: f64::NAN,
-            chopped: f64::NAN,
-            theta: f64::NAN,
-            seconds: self.stops.seconds(),
-        })?;
+        self.tell(&Progress::of_setup(self.fraction, self.stops.seconds()))?;
         self.stops.check()
     }
 
@@ -170,6 +157,7 @@ impl Watch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::qp::Counts;
     use std::sync::atomic::AtomicUsize;
 
     /// One task after the other; the first is running when another thread cancels.
@@ -185,5 +173,17 @@ mod tests {
         let ended = watch.every_body(&SetupPart::of(1, vec![1.0; 4], 1.0), task, |_, ()| {});
         assert_eq!(ended.unwrap_err().kind, Kind::Cancelled);
         assert_eq!(begun.into_inner(), 1);
+    }
+
+    #[test]
+    fn a_report_counts_the_products_and_forces_of_all_islands_up_to_their_last_step() {
+        let mut watch = Host::default().watch(1e300, Phases::default());
+        for (island, products, active) in [(3, 5, 2), (0, 7, 4), (3, 9, 1)] {
+            let counts = Counts { products, ..Counts::default() };
+            watch
+                .step(Told { island, counts, progress: Progress { active, ..Progress::of_setup(1.0, 0.0) } })
+                .unwrap();
+        }
+        assert_eq!(watch.all, [0, 16, 5]);
     }
 }

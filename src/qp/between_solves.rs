@@ -10,26 +10,28 @@ use crate::qp::space::Space;
 /// Storage while no method uses the data. A, the blocks of G and the rounding of G must not change.
 #[derive(Default)]
 pub struct BetweenSolves {
-    space: Mutex<Option<Space>>,
-    directions: Mutex<Option<Conjugate>>,
+    space: Mutex<Option<Box<Space>>>,
+    directions: Mutex<Option<Box<Conjugate>>>,
 }
 
 impl BetweenSolves {
     /// Takes the stored space if it belongs to these rows.
     pub fn take_space(&self, g_transposed: &Csr, bounded: &[bool]) -> Option<Space> {
-        locked(&self.space).take_if(|space| space.bounded == bounded && space.rows.is_of(g_transposed))
+        let fits = |space: &mut Box<Space>| space.bounded == bounded && space.rows.is_of(g_transposed);
+        locked(&self.space).take_if(fits).map(|space| *space)
     }
 
+    /// Without modes there is nothing to keep.
     pub fn keep(&self, space: Space) {
-        *locked(&self.space) = Some(space);
+        *locked(&self.space) = space.factors.is_some().then(|| Box::new(space));
     }
 
     pub fn take_directions(&self) -> Option<Conjugate> {
-        locked(&self.directions).take()
+        locked(&self.directions).take().map(|kept| *kept)
     }
 
     pub fn keep_directions(&self, directions: Conjugate) {
-        *locked(&self.directions) = Some(directions);
+        *locked(&self.directions) = Some(Box::new(directions));
     }
 }
 

@@ -150,7 +150,7 @@ impl Prepared {
                 island,
                 dual,
                 rows,
-                whole,
+                whole: whole.map(Box::new),
                 preconditioner: None,
                 kept: BetweenSolves::default(),
                 pairs: PairsBetween::default(),

@@ -45,9 +45,11 @@ impl Prepared {
         for (ready, &asked) in duals.islands.iter().zip(&asked) {
             made.push(match asked {
                 Preconditioning::Automatic | Preconditioning::None => None,
-                Preconditioning::Lumped => Some((asked, preconditioner(model, ready, lumped, &watch.stops)?)),
+                Preconditioning::Lumped => {
+                    Some(Box::new((asked, preconditioner(model, ready, lumped, &watch.stops)?)))
+                }
                 Preconditioning::Dirichlet => {
-                    Some((asked, preconditioner(model, ready, dirichlet, &watch.stops)?))
+                    Some(Box::new((asked, preconditioner(model, ready, dirichlet, &watch.stops)?)))
                 }
             });
         }

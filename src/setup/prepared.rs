@@ -151,7 +151,7 @@ impl Prepared {
             phases.keeps(Phase::Factorisation, duals.operators.factor_bytes);
             phases.keeps(Phase::DualOperators, islands.iter().map(|ready| ready.dual.bytes_kept()).sum());
             let preconditioners = islands.iter().filter_map(|ready| ready.preconditioner.as_ref());
-            phases.keeps(Phase::Preconditioner, preconditioners.map(|(_, made)| made.bytes_kept()).sum());
+            phases.keeps(Phase::Preconditioner, preconditioners.map(|made| made.1.bytes_kept()).sum());
         }
         phases.report()
     }

@@ -14,15 +14,15 @@ use crate::setup::whole::Whole;
 /// Multiplications of a product with F, a tenth of a millisecond, above which several threads save time.
 const PARALLEL_PAYS: usize = 1 << 18;
 
-/// The dual problem of an island.
+/// The dual problem of an island. There may be very many, of one small body each: what few of them have is apart.
 pub struct Ready {
     pub island: Island,
     pub dual: Dual,
     pub rows: DualRows,
     /// The island in terms of the host's bodies, if its own bodies are pieces of them.
-    pub whole: Option<Whole>,
+    pub whole: Option<Box<Whole>>,
     /// The preconditioner and its option.
-    pub preconditioner: Option<(Preconditioning, Preconditioner)>,
+    pub preconditioner: Option<Box<(Preconditioning, Preconditioner)>>,
     /// Data that a solve leaves for the next one.
     pub kept: BetweenSolves,
     /// Data that a solve with friction leaves for the next one.
@@ -32,7 +32,7 @@ pub struct Ready {
 impl Ready {
     /// The option of the present preconditioner.
     pub fn preconditioning(&self) -> Preconditioning {
-        self.preconditioner.as_ref().map_or(Preconditioning::None, |(kind, _)| *kind)
+        self.preconditioner.as_ref().map_or(Preconditioning::None, |made| made.0)
     }
 
     /// Threads for products with F, at most `threads`: one if a product costs less than waking others.

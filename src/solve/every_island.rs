@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
+use crate::platform::memory::reserved;
 use crate::platform::threads::{self, TaskEvent, Tasks};
 use crate::progress::{LogLevel, Told, Voice, Watch};
 use crate::setup::Prepared;
@@ -33,7 +34,11 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
     if count == 1 || threads == 1 {
         let log = watch.log.clone();
         let say: Say = Arc::new(move |line| log.say(LogLevel::Phase, || line));
-        return (0..count).map(|k| of_itself(solve(k, &say, watch))).collect();
+        let mut ends = reserved(count, "answers of groups of bodies")?;
+        for k in 0..count {
+            ends.push(of_itself(solve(k, &say, watch))?);
+        }
+        return Ok(ends);
     }
     let bodies = |k: usize| islands[k].island.bodies.iter().map(|&p| &model.bodies[p].body);
     let on_caller = |k: usize| bodies(k).any(|body| body.k().is_some_and(|k| k.on_caller()));

@@ -70,7 +70,7 @@ impl Scaled {
 
     pub fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
         let (g_transposed, blocks) = (self.coarse(ready), &ready.dual.blocks[..]);
-        let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
+        let preconditioner = ready.preconditioner.as_ref().map(|made| &made.1 as &dyn qp::Preconditioner);
         let (b, e, bounded, rounding) =
             (&self.d, &self.resultants, &self.gaps.bounded, ready.dual.rounding());
         Qp { a, b, g_transposed, blocks, rounding, e, bounded, preconditioner, kept: Some(&ready.kept) }

@@ -43,8 +43,8 @@ pub struct Pair {
 /// Pairs for some rows of a problem, while no solve uses them.
 #[derive(Default)]
 pub struct PairsBetween {
-    kept: Mutex<Option<(Vec<usize>, Pairs)>>,
-    answer: Mutex<Option<DualAnswer>>,
+    kept: Mutex<Option<Box<(Vec<usize>, Pairs)>>>,
+    answer: Mutex<Option<Box<DualAnswer>>>,
 }
 
 /// The last answer with friction, for measurements.
@@ -58,7 +58,7 @@ pub struct DualAnswer {
 impl PairsBetween {
     /// The pairs for these rows; pairs for other rows are dropped.
     pub fn take(&self, rows: &[usize]) -> Option<Pairs> {
-        locked(&self.kept).take().filter(|(of, _)| of == rows).map(|(_, pairs)| pairs)
+        locked(&self.kept).take().filter(|kept| kept.0 == rows).map(|kept| kept.1)
     }
 
     /// Keeps the newest pairs of these rows, as many as save more than they cost: with as many new ones, minimisations over them
@@ -69,7 +69,7 @@ impl PairsBetween {
         while beside(pairs.count()) > work.max(CHEAP) {
             pairs.kept.pop_front();
         }
-        *locked(&self.kept) = Some((rows.to_vec(), pairs));
+        *locked(&self.kept) = Some(Box::new((rows.to_vec(), pairs)));
     }
 
     /// Drops the pairs, so that earlier solves do not affect the next one.
@@ -78,11 +78,11 @@ impl PairsBetween {
     }
 
     pub fn keep_answer(&self, answer: DualAnswer) {
-        *locked(&self.answer) = Some(answer);
+        *locked(&self.answer) = Some(Box::new(answer));
     }
 
     pub fn take_answer(&self) -> Option<DualAnswer> {
-        locked(&self.answer).take()
+        locked(&self.answer).take().map(|answer| *answer)
     }
 }
 

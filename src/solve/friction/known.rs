@@ -14,7 +14,8 @@ pub fn on_known_states(ready: &Ready, settings: &Settings, qp: Qp, gaps: &Gaps) 
     let Some(answer) = ready.pairs.take_answer() else { return Ok(None) };
     let near = Restricted::new(qp, &answer.rows);
     let cones = cones(ready, gaps, &answer.rows)?;
-    let preconditioner = ready.preconditioner.as_ref().map(|(_, of)| OfBodies { of, rows: &answer.rows });
+    let preconditioner =
+        ready.preconditioner.as_ref().map(|made| OfBodies { of: &made.1, rows: &answer.rows });
     let preconditioner = preconditioner.as_ref().map(|of| of as _);
     let problem = FrictionProblem { qp: near.qp(), cones: &cones, preconditioner };
     let products = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);

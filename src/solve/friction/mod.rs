@@ -32,7 +32,7 @@ pub fn solve_with_friction(
 ) -> Result<Found> {
     let ready = case.ready;
     let cones: Cones = cones(ready, gaps, rows)?;
-    let preconditioner = ready.preconditioner.as_ref().map(|(_, of)| OfBodies { of, rows });
+    let preconditioner = ready.preconditioner.as_ref().map(|made| OfBodies { of: &made.1, rows });
     let preconditioner = preconditioner.as_ref().map(|of| of as _);
     let problem = FrictionProblem { qp: near.qp(), cones: &cones, preconditioner };
     let most = usize::try_from(means.settings.max_steps).unwrap_or(usize::MAX);
