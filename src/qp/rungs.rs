@@ -27,13 +27,12 @@ rungs! {
     Plateau: "plateau", "P1: the answer is judged where the residual stays";
     TightenBy: "tightened by", "P1.3: the target by the violation reported";
     Tighten: "tightened", "P1.4: a tenth of the target";
-    Reproject: "projected again", "P3: a nearly cancelled direction is projected again";
     ProjectedFirst: "projected first", "P4: a step expected to leave the bounds is projected before its product";
     PullAll: "all pulling", "P9: all rows with a negative multiplier leave at once, before P10";
     Reference: "last motions", "P10: free motions of the last gradient projection";
     Faces: "faces", "S10: faces by the data of the host where the iteration gives up";
-    Interior: "interior point", "S13.6: faces from an interior point, dense";
-    InteriorSparse: "interior point, sparse", "S13.6: the same with sparse factors";
+    SparseFaces: "sparse faces", "S13: sparse factors where dense ones confirm a face without an answer that passes";
+    Interior: "interior point", "S13.6: faces from an interior point";
     AllRows: "all rows", "S13: the face with rows that nearly depend on others";
     Again: "again", "S10: the iteration again from an interior point";
     Slides: "slides", "S12: resistance that is noise is taken out";

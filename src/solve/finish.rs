@@ -9,13 +9,14 @@ use crate::model::{FinishBy, Method, Settings};
 use crate::platform::interrupt;
 use crate::qp::{Face, Rung, Verdict};
 use crate::solve::feedback::{Feedback, NegativeMotions};
+use crate::solve::pivots::Pivots;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 use crate::solve::slides::FAR;
 use crate::solve::sparse_face::SparseFaces;
 use crate::solve::split_point::{FaceSolver, SplitPoint};
 
-/// Limit of active sets.
-const FACES: usize = 16;
+/// Limit of Newton steps with friction.
+const STEPS: usize = 16;
 /// Limit of corrections on one active set.
 const CORRECTIONS: usize = 10;
 /// Ratios of the certificate below this are rounding.
@@ -93,25 +94,21 @@ struct Finish<'a, 'b> {
 }
 
 impl<'a> Finish<'a, '_> {
-    /// Active sets from that of the answer on; if none of them has an answer that passes, from that of an interior point on, by
-    /// dense factors, then by sparse ones.
+    /// Active sets from that of the answer on; if none of them has an answer that passes, from that of an interior point on.
     fn run(&mut self, inside: bool) -> Result<()> {
-        let Faces { qp, direct } = &self.recovery.faces;
+        let qp = &self.recovery.faces.qp;
         let point = SplitPoint::of(self.recovery, self.ending, if self.delicate { 1.0 } else { FAR })?;
         if self.recovery.friction {
             return self.follow_friction(point);
         }
-        self.follow(qp.at_bound(&self.ending.solution.x), point, direct.limit)?;
+        self.follow(qp.at_bound(&self.ending.solution.x), point)?;
         if self.passes() || !inside {
             return Ok(());
         }
         let Some(faces) = self.sparse()? else { return Ok(()) };
         let Some((active, inside)) = faces.inside(self.recovery)? else { return Ok(()) };
-        for dense in [direct.limit, 0] {
-            let rung = if dense > 0 { Rung::Interior } else { Rung::InteriorSparse };
-            if !self.passes() && rung.is_tried() {
-                self.follow(active.clone(), SplitPoint::inside(self.recovery, &inside), dense)?;
-            }
+        if Rung::Interior.is_tried() {
+            self.follow(active, SplitPoint::inside(self.recovery, &inside))?;
         }
         self.done.inside = (!self.passes()).then_some(inside.force);
         Ok(())
@@ -129,46 +126,56 @@ impl<'a> Finish<'a, '_> {
         Ok(self.sparse.clone())
     }
 
-    /// Active sets one after the other, until one confirms itself or occurs again; up to `dense` rows and modes by dense factors.
-    fn follow(&mut self, mut active: Vec<bool>, mut point: SplitPoint, dense: usize) -> Result<()> {
-        let Faces { qp, direct } = &self.recovery.faces;
-        let mut visited: Vec<Vec<bool>> = Vec::new();
-        while visited.len() < FACES && !visited.contains(&active) {
-            point.hold(&active);
-            let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
-            let undetermined;
-            if rows.len() + point.alpha.len() > dense {
-                let Some(faces) = self.sparse()? else { break };
-                let Some(face) = faces.on(rows)? else { break };
-                self.correct(&mut point, FaceSolver::Sparse(&face))?;
-                undetermined = face.undetermined();
-            } else {
-                let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
-                let mut feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
-                self.correct(&mut point, FaceSolver::Dense(&feedback))?;
-                if feedback.face.is_truncated() && Rung::AllRows.is_tried() {
-                    feedback = Feedback::on(feedback.face.in_full()?, point.alpha.len(), &self.negative)?;
-                    self.correct(&mut point, FaceSolver::Dense(&feedback))?;
-                }
-                undetermined = feedback.face.undetermined();
-            }
-            self.ending.solution.counts.direct += 1;
+    /// Active sets one after the other, until one confirms itself. If its answer does not pass, sparse factors take the place of dense
+    /// ones from the beginning on, since the point may have lost its digits.
+    fn follow(&mut self, mut active: Vec<bool>, mut point: SplitPoint) -> Result<()> {
+        let (mut dense, start) = (self.recovery.faces.direct.limit, point.clone());
+        let mut sets = Pivots::default();
+        while sets.go_on_with(&active) {
+            let Some(undetermined) = self.on_face(&mut point, &active, dense)? else { break };
             if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
                 break;
             }
             let next = point.active(self.recovery);
-            if next == active {
+            if next != active {
+                active = sets.after(&active, next);
+            } else if dense > 0 && !self.passes() && Rung::SparseFaces.is_tried() {
+                (dense, point, sets) = (0, start.clone(), Pivots::default());
+            } else {
                 self.keep(&point, undetermined, is_no_worse)?;
+                break;
             }
-            visited.push(std::mem::replace(&mut active, next));
         }
         Ok(())
+    }
+
+    /// Corrects on one face, up to `dense` rows and modes by dense factors; the number of motions that it leaves open. None: it
+    /// has no factor.
+    fn on_face(&mut self, point: &mut SplitPoint, active: &[bool], dense: usize) -> Result<Option<usize>> {
+        let Faces { qp, direct } = &self.recovery.faces;
+        point.hold(active);
+        self.ending.solution.counts.direct += 1;
+        let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
+        if rows.len() + point.alpha.len() > dense {
+            let Some(faces) = self.sparse()? else { return Ok(None) };
+            let Some(face) = faces.on(rows)? else { return Ok(None) };
+            self.correct(point, FaceSolver::Sparse(&face))?;
+            return Ok(Some(face.undetermined()));
+        }
+        let Some(face) = Face::new(*qp, direct.entries, rows)? else { return Ok(None) };
+        let mut feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
+        self.correct(point, FaceSolver::Dense(&feedback))?;
+        if feedback.face.is_truncated() && Rung::AllRows.is_tried() {
+            feedback = Feedback::on(feedback.face.in_full()?, point.alpha.len(), &self.negative)?;
+            self.correct(point, FaceSolver::Dense(&feedback))?;
+        }
+        Ok(Some(feedback.face.undetermined()))
     }
 
     /// Newton steps of the laws of friction, until the states are known and only rounding is left.
     fn follow_friction(&mut self, mut point: SplitPoint) -> Result<()> {
         let (mut last, mut before) = (f64::INFINITY, Vec::new());
-        for _ in 0..FACES {
+        for _ in 0..STEPS {
             interrupt::check()?;
             let Some((size, states)) = point.step_with_friction(self.recovery)? else { break };
             self.ending.solution.counts.direct += 1;

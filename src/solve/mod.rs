@@ -18,6 +18,7 @@ mod known;
 mod near;
 mod negative;
 mod paper;
+mod pivots;
 mod presolve;
 mod recovery;
 mod report;

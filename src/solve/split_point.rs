@@ -30,6 +30,7 @@ impl FaceSolver<'_> {
 
 /// Forces x and amplitudes alpha with u = v + w: w are motions that K does not resist; in a sum with large w, v would
 /// lose its digits. v, w and x are in two doubles: where loads and forces nearly cancel, rounding of x would move v.
+#[derive(Clone)]
 pub struct SplitPoint {
     v: TwofoldVector,
     /// Amplitudes of the motions that v contains.

@@ -16,9 +16,6 @@ const ROUNDING: f64 = 1e-10;
 const FAR: f64 = 0.1;
 /// A direction is lost to rounding if less than this part is left beside the stored directions.
 const LOST: f64 = 1e-7;
-/// If less than this part is left beside the stored directions, it is projected again, since the rounding of the first
-/// projection matters.
-const CANCELLED: f64 = 0.1;
 /// Steps shorter than this part of x are not stored.
 const SHORT: f64 = 1e-6;
 /// After this number of gradient projections, free motions are those of the last projection: otherwise projections alone
@@ -77,8 +74,7 @@ impl Iterate<'_> {
     }
 
     /// P3: `z = P_F M_F P_F phi`, conjugate to the stored directions; if only rounding is left, z itself, without stored
-    /// directions. A nearly cancelled direction is projected again, since the remaining components would make conjugate
-    /// gradients diverge below 1e-8.
+    /// directions.
     fn direction(&mut self) -> Result<Vec<f64>> {
         let mut z = self.split.free.clone();
         self.precondition(&mut z)?;
@@ -86,9 +82,6 @@ impl Iterate<'_> {
         if !self.kept.is_empty() {
             let mut p = z.clone();
             self.kept.make_conjugate(&mut p);
-            if norm(&p) < CANCELLED * norm(&z) && Rung::Reproject.is_tried() {
-                self.project_on_face(&mut p)?;
-            }
             if norm(&p) > LOST * norm(&z) && dot(&self.r, &p) > 0.0 {
                 return Ok(p);
             }
