@@ -9,7 +9,7 @@ const PATIENCE: usize = 10;
 /// The active sets so far.
 pub struct Pivots {
     count: usize,
-    /// Since single rows change side.
+    /// The sets so far; while single rows change side, those since this began.
     visited: Vec<Vec<bool>>,
     /// Smallest number of rows with a wrong sign, and how many more sets may have no fewer.
     fewest: usize,
