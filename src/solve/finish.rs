@@ -129,18 +129,20 @@ impl<'a> Finish<'a, '_> {
     /// Active sets one after the other, until one confirms itself. If its answer does not pass, sparse factors take the place of dense
     /// ones from the beginning on, since the point may have lost its digits.
     fn follow(&mut self, mut active: Vec<bool>, mut point: SplitPoint) -> Result<()> {
-        let (mut dense, start) = (self.recovery.faces.direct.limit, point.clone());
+        let mut dense = self.recovery.faces.direct.limit;
+        let mut start = (!self.passed && dense > 0).then(|| point.clone());
         let mut sets = Pivots::default();
         while sets.go_on_with(&active) {
             let Some(undetermined) = self.on_face(&mut point, &active, dense)? else { break };
+            self.ending.solution.counts.direct += 1;
             if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
                 break;
             }
             let next = point.active(self.recovery);
             if next != active {
                 active = sets.after(&active, next);
-            } else if dense > 0 && !self.passes() && Rung::SparseFaces.is_tried() {
-                (dense, point, sets) = (0, start.clone(), Pivots::default());
+            } else if let Some(start) = start.take_if(|_| !self.passes() && Rung::SparseFaces.is_tried()) {
+                (dense, point, sets) = (0, start, Pivots::default());
             } else {
                 self.keep(&point, undetermined, is_no_worse)?;
                 break;
@@ -154,7 +156,6 @@ impl<'a> Finish<'a, '_> {
     fn on_face(&mut self, point: &mut SplitPoint, active: &[bool], dense: usize) -> Result<Option<usize>> {
         let Faces { qp, direct } = &self.recovery.faces;
         point.hold(active);
-        self.ending.solution.counts.direct += 1;
         let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
         if rows.len() + point.alpha.len() > dense {
             let Some(faces) = self.sparse()? else { return Ok(None) };
