@@ -20,7 +20,6 @@ macro_rules! rungs {
 
 rungs! {
     Start: "first face", "S6.1: a warm start's own face is tried first";
-    Cold: "cold start", "S6.3: a start far off is discarded";
     ProjectionInside: "projection inside", "J3: an interior point method after short steps of a projection";
     Fit: "fitted again", "S8: the least-squares multiplier is refined";
     SparseInverse: "sparse inverse", "S8: free motions by the sparse factor before dense parts";

@@ -1,7 +1,7 @@
 //! The current point, its gradient and its parts on the face: Section 4 on the feasible set of (12).
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, norm, norm_max};
+use crate::linalg::vector::{axpy, dot, norm, norm_max, ratio};
 use crate::qp::coarse::Coarse;
 use crate::qp::conjugate::Conjugate;
 use crate::qp::gradient::{feasible_step, Split};
@@ -99,6 +99,20 @@ impl<'a> Iterate<'a> {
         self.drift.measured(norm(&errors.collect::<Vec<_>>()), self.counts.steps());
         self.settled &= !self.qp.a.has_approximation();
         self.settle()
+    }
+
+    /// S6.3: the multiple of x with the least theta: forces of far larger loads leave their rounding.
+    pub fn scale(&mut self) -> Result<()> {
+        let image: Vec<f64> = self.g.iter().zip(self.qp.b).map(|(g, b)| g + b).collect();
+        let t = ratio(dot(self.qp.b, &self.x), dot(&image, &self.x)).max(0.0);
+        if !t.is_finite() {
+            return Ok(());
+        }
+        self.drift = Drift::default();
+        self.drift.add(t, &image);
+        self.x.iter_mut().for_each(|x| *x *= t);
+        self.g = image.iter().zip(self.qp.b).map(|(image, b)| t * image - b).collect();
+        self.update()
     }
 
     /// Uses directions of an earlier solve on this face, if theta is not minimal along them.

@@ -15,7 +15,7 @@ mod steps;
 mod stop;
 
 use crate::error::Result;
-use crate::linalg::vector::{norm, norm_max, ratio};
+use crate::linalg::vector::{dot, norm, norm_max, ratio, NOISE};
 use crate::platform::interrupt;
 use crate::qp::between_solves::BetweenSolves;
 use crate::qp::coarse::Coarse;
@@ -33,8 +33,6 @@ use stop::Stop;
 const ROUNDING: f64 = 1e-12;
 /// An entry of x below this part of the largest holds no motion.
 const NO_FORCE: f64 = 1e-15;
-/// A start is not used if its forces cause motions larger than those of loads and gaps by this factor.
-const FAR_OFF: f64 = 1e3;
 
 /// Name of S6 in the log.
 const FIRST_POINT: &str = "first feasible point";
@@ -50,6 +48,7 @@ pub fn minimise(
     // a cold start gives equal bits independently of earlier solves
     let directions = qp.kept.and_then(BetweenSolves::take_directions).filter(|_| is_warm);
     let mut coarse = Coarse::of(&qp)?;
+    let start = &in_size(&coarse, qp.e, start)[..];
     let first = match interrupt::part(FIRST_POINT, || first_point(&qp, &mut coarse, start))? {
         Some(first) => first,
         // S6.2
@@ -65,12 +64,8 @@ pub fn minimise(
     };
     // S6.3
     let mut it = Iterate::new(qp, coarse, first)?;
-    if is_warm && it.is_far_off() && Rung::Cold.is_tried() {
-        if let Some(cold) = project(&qp, &mut it.coarse, &vec![0.0; start.len()], &vec![false; start.len()])?
-        {
-            it.x = cold.point;
-            it.refresh()?;
-        }
+    if is_warm && qp.e.is_empty() {
+        it.scale()?;
     }
     directions.map_or(Ok(()), |directions| it.go_on_with(directions))?;
     proportioning(it, limits, judge, observer)
@@ -80,6 +75,16 @@ fn infeasible(x: Vec<f64>, verdict: Verdict, coarse: &Coarse) -> Solution {
     let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
     let counts = Counts { coarse_solves, coarse_factorisations, ..Counts::default() };
     Solution { x, alpha: vec![0.0; coarse.dimension()], undetermined: 0, scale: 0.0, verdict, counts }
+}
+
+/// S6.1: the part of a start that comes closest to balancing e: forces of larger loads leave their rounding. All of it if it has no
+/// resultants.
+fn in_size(coarse: &Coarse, e: &[f64], start: &[f64]) -> Vec<f64> {
+    let held = coarse.image(start);
+    let size = norm(&held);
+    let has_resultants = size > NOISE * norm(&coarse.terms(start));
+    let t = if has_resultants { (dot(e, &held) / size / size).clamp(0.0, 1.0) } else { 1.0 };
+    start.iter().map(|x| t * x).collect()
 }
 
 /// S6.1: the feasible point nearest to `start`, on the face of the zeros of `start` (its active set) if this face has
@@ -177,13 +182,6 @@ fn run(
 mod tests;
 
 impl Iterate<'_> {
-    /// The forces cause motions so much larger than those of loads and gaps that they belong to other loads: their
-    /// rounding is large relative to the present loads.
-    fn is_far_off(&self) -> bool {
-        let image: Vec<f64> = self.g.iter().zip(self.qp.b).map(|(g, b)| g + b).collect();
-        norm(&image) > FAR_OFF * norm(self.qp.b)
-    }
-
     fn progress(&self, kind: StepKind, small: f64) -> StepReport<'_> {
         StepReport::new(kind, &self.counts, &self.split, self.theta(), small)
     }
