@@ -1,6 +1,7 @@
 //! Slides against all combinations of states: where bodies may rest they do not slide, and where they slide it is said.
 
 use decks::random::Random;
+use decks::rubbing::Rubbing;
 use decks::{Body, Csr, Deck};
 use feti_contact::error::Kind;
 use feti_contact::solver::Outcome;
@@ -124,4 +125,33 @@ fn small_frames_slide_only_where_they_cannot_rest() {
         1000 * stalled as u64 <= 2 * most && 100 * named >= 95 * sliding,
         "{stalled}, {named} of {sliding}"
     );
+}
+
+/// Blocks on each other in space, all interfaces as strong, pushed obliquely: where the load passes what the cones hold, some of them
+/// stay together although their friction is at its bound.
+#[test]
+fn blocks_pushed_just_beyond_their_cones_are_named_and_just_below_held() {
+    for (blocks, mu, height) in [(3, 0.6, 0.0449), (2, 0.1, 0.1457), (3, 0.3, 0.0493), (1, 0.3, 0.3)] {
+        for load in [0.9999, 1.0001, 1.001, 1.1] {
+            let deck = Rubbing { height, ..Rubbing::new(3, 4, blocks, mu, load) }.build();
+            let ended = hand_over::problem(&deck)
+                .and_then(|mut problem| problem.solve().map(|report| report.outcome));
+            let right = match &ended {
+                Ok(outcome) => load < 1.0 && *outcome == Outcome::Solved,
+                Err(error) => load > 1.0 && error.kind == Kind::LoadNotHeld,
+            };
+            assert!(right, "{} height {height}: {ended:?}", deck.name);
+        }
+    }
+}
+
+/// A frame that may slide and has one rest, whose gaps are far larger than what its states are measured by.
+#[test]
+fn a_rest_known_only_to_the_rounding_of_a_far_way_is_found() {
+    for seed in [199000529, 199007178] {
+        let deck = frame(&mut Random::new(seed), 2 + seed as usize % 3);
+        assert_eq!(answers(&deck).unwrap().answers.len(), 1, "{seed}");
+        let ended = hand_over::problem(&deck).and_then(|mut problem| problem.solve());
+        assert_eq!(ended.unwrap().outcome, Outcome::Solved, "{seed}");
+    }
 }

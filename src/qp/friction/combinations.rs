@@ -1,7 +1,7 @@
 //! All combinations of states of a few nodes, one dense system each. In the plane they are all rests that there are.
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, norm};
+use crate::linalg::vector::{axpy, norm, NOISE};
 use crate::qp::friction::cones::Node;
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
@@ -109,7 +109,9 @@ impl Run<'_, '_> {
             let ((x, g), mut alpha) = (step.from(&now.x, &now.g, 1.0), now.alpha);
             axpy(1.0, &turn, &mut alpha);
             now = self.point(x, g, alpha)?;
-            if self.is_met(&now) {
+            // the system is solved exactly: only its rounding is left
+            let rounding = NOISE * (norm(&now.x) + norm(&now.g) + norm(&now.r));
+            if now.merit <= self.small.max(rounding) {
                 return Ok(Some(now));
             }
             if !now.merit.is_finite() {

@@ -41,15 +41,6 @@ pub enum Place {
     Rim { along: [f64; 2], ratio: f64 },
 }
 
-impl Place {
-    /// Without the resistance to turns of t, which is of the order of the force.
-    pub fn free_across(&mut self) {
-        if let Self::Surface { ratio, .. } | Self::Rim { ratio, .. } = self {
-            *ratio = 0.0;
-        }
-    }
-}
-
 impl Node {
     pub fn new(normal: Option<usize>, tangents: &[usize], mu: f64, bound: f64) -> Result<Self> {
         let wrong = |what: &str| Err(Error::new(Kind::Argument("nodes"), what));

@@ -98,6 +98,7 @@ impl<'a> Run<'a, '_> {
                 }
             }
             now = self.otherwise(limits, &start, now)?;
+            self.reached(&now);
             if !self.is_met(&now) {
                 return self.best(limits, judge);
             }

@@ -109,7 +109,12 @@ fn settle(
     // slips are known to a part of this size
     let cut = if cones.are_half_lines() { 0.0 } else { CUT };
     for _ in 0..ROUNDS {
-        places.iter_mut().for_each(Place::free_across);
+        // a node that slips resists no turn of its force; one that does not slip resists it, although its force is at the bound
+        for place in &mut places {
+            if let Place::Surface { ratio, .. } | Place::Rim { ratio, .. } = place {
+                *ratio = if *ratio < CUT { 0.0 } else { *ratio };
+            }
+        }
         let (coordinates, weights) = derivative(cones, &places);
         let resisted = motions.inverse(&coordinates, weights, (true, cut))?;
         for _ in 0..PASSES {
