@@ -1,7 +1,7 @@
 //! Bodies without a load beside bodies with one, given by their elements and cut into pieces.
 
 use decks::random::Random;
-use decks::{Block, Friction, Rows};
+use decks::{Block, Deck, Friction, Rows};
 use feti_contact::error::Result;
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
@@ -67,5 +67,35 @@ fn a_cut_body_without_load_rests_whatever_its_friction_may_hold() {
             let report = problem.solve().unwrap_or_else(|error| panic!("{case} {pieces}: {error}"));
             assert_eq!(report.outcome, Outcome::Solved, "{case} {pieces}: {:?}", report.certificate);
         }
+    }
+}
+
+/// Loads in balance up to rounding, which pushes aside more than friction holds: the body lifts off from what it deforms into.
+#[test]
+fn a_loose_block_whose_loads_balance_rests_on_a_floor_with_friction() {
+    for seed in 0..100 {
+        let mut random = Random::new(seed);
+        let elements = [1 + random.below(3), 1 + random.below(2), 1];
+        let block = Block { dimension: 2, elements, ..Block::default() };
+        let mut body = block.floating().body;
+        let mut bend = random.normals(body.dofs(), 1e-2);
+        let travel = random.decades(0.0, 2.0);
+        bend.iter_mut().for_each(|u| *u += travel);
+        body.load = body.stiffness.times(&bend);
+        let mut deck = Deck::new("idle", vec![body]);
+        let (angle, mu) = (random.between(-1.5, 1.5), random.between(0.05, 0.6));
+        let (normal, along) = ([angle.sin(), -angle.cos()], [angle.cos(), angle.sin()]);
+        deck.friction = Friction::none(1, deck.dofs());
+        for i in 0..=elements[0] {
+            let at = 2 * block.node([i, 0, 0]);
+            deck.contact.push(&[(at, normal[0]), (at + 1, normal[1])], random.between(-0.01, 0.01));
+            deck.friction.push(Some(i), &[&[(at, along[0]), (at + 1, along[1])]], mu, 0.0);
+        }
+        let mut problem = hand_over::problem(&deck).unwrap();
+        let outcome = problem.solve().unwrap().outcome;
+        assert_eq!(outcome, Outcome::Solved, "{seed}");
+        let most =
+            problem.multipliers(RowKind::Inequality).unwrap().iter().fold(0.0, |most: f64, l| most.max(*l));
+        assert!(most < 1e-11, "{seed}: {most}");
     }
 }

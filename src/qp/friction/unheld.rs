@@ -42,7 +42,13 @@ pub fn unheld(qp: &Qp, cones: &Cones, weights: &[f64]) -> Result<(Vec<f64>, Vec<
     let e: Vec<f64> = qp.e.iter().zip(weights).map(|(e, w)| w * e).collect();
     let finite = if cones.are_half_lines() { in_cone(&g_transposed, qp.bounded, &e)? } else { None };
     let scaled = Qp { g_transposed: &g_transposed, e: &e, ..*qp };
-    let (forces, rest) = finite.map_or_else(|| by_newton(&scaled, &cones.wider(1.0 + WIDER)), Ok)?;
+    let (forces, rest) = match finite {
+        Some(found) => found,
+        None => {
+            let (forces, rest) = by_newton(&scaled, &cones.wider(1.0 + WIDER))?;
+            (cones.nearest(&forces).0, rest)
+        }
+    };
     Ok((forces, rest.iter().zip(weights).map(|(rest, w)| rest / w).collect()))
 }
 
