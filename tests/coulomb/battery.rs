@@ -234,20 +234,21 @@ fn problems_with_friction_are_solved_rightly_or_not_at_all() {
     assert!(of(End::Wrong) == 0 && of(End::Unsolved) as f64 <= allowed, "{table}");
 }
 
-/// The motion that proves it was once that of bodies of equal stiffness.
+/// The motion that proves it was once that of bodies of equal stiffness; the last two loads were once taken for rounding.
 #[test]
 fn stacks_of_unequal_bodies_slide_beyond_what_friction_holds() {
-    for seed in [14, 65, 116, 133, 150, 201, 218, 235, 269, 303, 320] {
+    for seed in [14, 65, 116, 133, 150, 201, 218, 235, 269, 303, 320, 200501992, 200504729] {
         let drawn = case(seed, &SIZES);
         let (end, text) = ended(&drawn);
         assert!(drawn.known == Known::NotHeld && end == End::NotHeld, "{seed}: {text}");
     }
 }
 
-/// A row so far off that it never closes was once part of what gaps are measured against.
+/// A row so far off that it never closes was once part of what gaps are measured against; in the last four, no forces within the cones
+/// had the resultants that rounding leaves.
 #[test]
 fn rows_far_off_do_not_blur_what_is_near() {
-    for seed in [385, 1150, 1269, 1371] {
+    for seed in [385, 1150, 1269, 1371, 160000628, 160001155, 200503179, 200503485] {
         let (end, text) = ended(&case(seed, &SIZES));
         assert!(end == End::Solved, "{seed}: {text}");
     }

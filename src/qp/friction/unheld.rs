@@ -23,9 +23,11 @@ use crate::qp::{nearest_point, Polyhedron, Qp};
 
 /// Limit of modes for which a square matrix over the modes, and one rotation of it per row and mode, are inexpensive.
 const FEW: usize = 500;
-/// delta relative to the largest diagonal entry of `G G'`: the first value, the factor, and the last value.
+/// delta relative to the largest diagonal entry of `G G'`: the first value, the factor, its root where Newton's method fails, up to the
+/// shortest step, and the last value.
 const FIRST: f64 = 1.0;
 const LESS: f64 = 0.01;
+const SHORTEST: f64 = 0.5;
 const LAST: f64 = 1e-13;
 /// Relative increase of the coefficients.
 const WIDER: f64 = 1e-6;
@@ -77,26 +79,27 @@ fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Ve
 fn by_newton(qp: &Qp, cones: &Cones) -> Result<(Vec<f64>, Vec<f64>)> {
     let (mut motions, y) = (Motions::of(qp, cones)?, &vec![0.0; qp.b.len()]);
     let is_solved = |now: &Projected| norm(&now.left) <= ACCEPTED * norm(qp.e);
-    let (mut shift, mut last, mut rest) = (FIRST, None, qp.e.to_vec());
+    let (mut shift, mut less, mut last, mut rest) = (FIRST, LESS, None, qp.e.to_vec());
     let mut before = rest.clone();
-    while shift >= LAST {
+    while shift >= LAST && less < SHORTEST {
         let delta = shift * motions.size();
         // while the states of the nodes do not change, the remainder is a linear function of delta
         let from = |by: f64| {
             let beta = rest.iter().zip(&before).map(|(rest, before)| (rest + by * (rest - before)) / delta);
             Target { qp, cones, motions: &motions, y, delta }.projected(beta.collect())
         };
-        let mut now = from(LESS)?;
+        let mut now = from(less)?;
         if !is_solved(&now) {
             now = from(0.0)?;
         }
         if !is_solved(&now) {
-            break;
+            (shift, less) = (shift / less.sqrt(), less.sqrt());
+            continue;
         }
         let next: Vec<f64> = now.beta.iter().map(|beta| delta * beta).collect();
         before = if shift < FIRST { rest } else { next.clone() };
         (last, rest) = (Some((now, delta)), next);
-        shift *= LESS;
+        shift *= less;
     }
     let Some((Projected { point, places, .. }, delta)) = last else { return Ok((y.clone(), rest)) };
     settle(qp, cones, (&mut motions, delta), places, &mut rest)?;

@@ -48,7 +48,7 @@ pub fn minimise(
     // a cold start gives equal bits independently of earlier solves
     let directions = qp.kept.and_then(BetweenSolves::take_directions).filter(|_| is_warm);
     let mut coarse = Coarse::of(&qp)?;
-    let start = &in_size(&coarse, qp.e, start)[..];
+    let start = &in_size(&qp, &coarse, start)[..];
     let first = match interrupt::part(FIRST_POINT, || first_point(&qp, &mut coarse, start))? {
         Some(first) => first,
         // S6.2
@@ -77,14 +77,15 @@ fn infeasible(x: Vec<f64>, verdict: Verdict, coarse: &Coarse) -> Solution {
     Solution { x, alpha: vec![0.0; coarse.dimension()], undetermined: 0, scale: 0.0, verdict, counts }
 }
 
-/// S6.1: the part of a start that comes closest to balancing e: forces of larger loads leave their rounding. All of it if it has no
-/// resultants.
-fn in_size(coarse: &Coarse, e: &[f64], start: &[f64]) -> Vec<f64> {
+/// S6.1: a start, of which rows with resultants keep the part that comes closest to balancing e, so that forces of larger loads do
+/// not leave their rounding.
+fn in_size(qp: &Qp, coarse: &Coarse, start: &[f64]) -> Vec<f64> {
     let held = coarse.image(start);
     let size = norm(&held);
-    let has_resultants = size > NOISE * norm(&coarse.terms(start));
-    let t = if has_resultants { (dot(e, &held) / size / size).clamp(0.0, 1.0) } else { 1.0 };
-    start.iter().map(|x| t * x).collect()
+    let t = dot(qp.e, &held) / size / size;
+    let is_larger = size > NOISE * norm(&coarse.terms(start)) && (0.0..1.0).contains(&t);
+    let part = |i: usize| if is_larger && qp.g_transposed.row(i).next().is_some() { t } else { 1.0 };
+    start.iter().enumerate().map(|(i, x)| part(i) * x).collect()
 }
 
 /// S6.1: the feasible point nearest to `start`, on the face of the zeros of `start` (its active set) if this face has
