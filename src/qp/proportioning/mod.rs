@@ -48,7 +48,8 @@ pub fn minimise(
     // a cold start gives equal bits independently of earlier solves
     let directions = qp.kept.and_then(BetweenSolves::take_directions).filter(|_| is_warm);
     let mut coarse = Coarse::of(&qp)?;
-    let start = &in_size(&qp, &coarse, start)[..];
+    let scaled = is_warm.then(|| in_size(&qp, &coarse, start));
+    let start = scaled.as_deref().unwrap_or(start);
     let first = match interrupt::part(FIRST_POINT, || first_point(&qp, &mut coarse, start))? {
         Some(first) => first,
         // S6.2
