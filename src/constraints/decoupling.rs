@@ -23,7 +23,10 @@ const WHAT: &str = "the decoupling of rows";
 /// L, m x m: lower triangular, the diagonal positive and the last entry of every row.
 #[derive(Debug, Clone)]
 pub struct Decoupling {
-    rows: Csr,
+    /// m
+    count: usize,
+    /// None: L = I.
+    rows: Option<Box<Csr>>,
 }
 
 /// Rows scaled so that `B D^-1 B' + C` has the diagonal 1 (mean over the rows of a node): equality rows, contact rows,
@@ -43,9 +46,9 @@ pub struct UnitRows<'a> {
 }
 
 impl Decoupling {
-    /// L and `B'`. Compliant equality rows, large or redundant clusters of equality rows, and contact rows that are
+    /// L and `B'`, none if L = I. Compliant equality rows, large or redundant clusters of equality rows, and contact rows that are
     /// nearly combinations of equality rows are not changed.
-    pub fn of(given: UnitRows) -> Result<(Self, Csr)> {
+    pub fn of(given: UnitRows) -> Result<(Self, Option<Csr>)> {
         let (matrix, m) = (given.matrix, given.matrix.rows());
         let _room = headroom(64 * (matrix.val.len() + m + matrix.cols), WHAT)?;
         let mut work = Orthogonalisation::new(given)?;
@@ -73,11 +76,9 @@ impl Decoupling {
         Ok(work.finish())
     }
 
-    /// L = I and B.
-    pub fn none(matrix: &Csr) -> (Self, Csr) {
-        let mut rows = Csr::empty(matrix.rows());
-        (0..matrix.rows()).for_each(|i| rows.push_row([(i, 1.0)]));
-        (Self { rows }, matrix.clone())
+    /// L = I, of m rows.
+    pub fn none(count: usize) -> Self {
+        Self { count, rows: None }
     }
 
     /// l_ii: `lambda_i = x_i / l_ii` if no later row is combined with row i.
@@ -96,7 +97,7 @@ impl Decoupling {
 
     /// `lambda = L'^-1 lambda'`; entries beyond the rows are dropped.
     pub fn solve_transposed(&self, mut x: Vec<f64>) -> Vec<f64> {
-        x.truncate(self.rows.rows());
+        x.truncate(self.count);
         for i in (0..x.len()).rev() {
             let value = x[i] / self.diagonal(i);
             x[i] = value;
@@ -107,13 +108,15 @@ impl Decoupling {
 
     /// `c = L c'`; entries beyond the rows are ignored.
     pub fn apply(&self, c: &[f64]) -> Vec<f64> {
-        (0..self.rows.rows()).map(|i| self.rows.row_dot(i, c)).collect()
+        (0..self.count).map(|i| self.row(i).map(|(j, l)| l * c[j]).sum()).collect()
     }
 
     /// `lambda' = L'lambda`
     pub fn apply_transposed(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
-        self.rows.mul_transposed_add(1.0, x, &mut y);
+        for (i, x) in x.iter().enumerate().filter(|(_, x)| **x != 0.0) {
+            self.row(i).for_each(|(j, l)| y[j] += x * l);
+        }
         y
     }
 
@@ -123,11 +126,15 @@ impl Decoupling {
     }
 
     fn diagonal(&self, i: usize) -> f64 {
-        self.rows.val[self.rows.ptr[i + 1] - 1]
+        self.rows.as_ref().map_or(1.0, |rows| rows.val[rows.ptr[i + 1] - 1])
     }
 
     fn below(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.rows.row(i).take_while(move |(j, _)| *j < i)
+        self.rows.iter().flat_map(move |rows| rows.row(i)).take_while(move |(j, _)| *j < i)
+    }
+
+    fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.below(i).chain([(i, self.diagonal(i))])
     }
 }
 
@@ -242,8 +249,12 @@ impl<'a> Orthogonalisation<'a> {
         self.changed[i] = Some((self.sum.divided(length), parts));
     }
 
-    fn finish(self) -> (Decoupling, Csr) {
-        let (mut rows, mut matrix) = (Csr::empty(self.changed.len()), Csr::empty(self.given.matrix.cols));
+    fn finish(self) -> (Decoupling, Option<Csr>) {
+        let count = self.changed.len();
+        if self.changed.iter().all(Option::is_none) {
+            return (Decoupling::none(count), None);
+        }
+        let (mut rows, mut matrix) = (Csr::empty(count), Csr::empty(self.given.matrix.cols));
         for (i, changed) in self.changed.into_iter().enumerate() {
             match changed {
                 Some((row, parts)) => {
@@ -256,7 +267,7 @@ impl<'a> Orthogonalisation<'a> {
                 }
             }
         }
-        (Decoupling { rows }, matrix)
+        (Decoupling { count, rows: Some(Box::new(rows)) }, Some(matrix))
     }
 }
 
@@ -301,7 +312,9 @@ mod tests {
     }
 
     fn decoupled(matrix: &Csr, equalities: usize, compliance: &[f64], metric: &[f64]) -> (Decoupling, Csr) {
-        Decoupling::of(UnitRows { matrix, equalities, nodes: &[], compliance, metric }).unwrap()
+        let given = UnitRows { matrix, equalities, nodes: &[], compliance, metric };
+        let (decoupling, changed) = Decoupling::of(given).unwrap();
+        (decoupling, changed.unwrap_or_else(|| matrix.clone()))
     }
 
     /// Four copies of a node joined in a chain, a contact row on the softest: the contact row acts on all of them.

@@ -41,7 +41,7 @@ pub struct RowsInput<'a> {
 }
 
 /// All rows of one kind.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct RowSet {
     /// m x (unknowns of all bodies); no unit. Saved states share it.
     pub matrix: Arc<Csr>,

@@ -12,7 +12,7 @@ pub fn of_host(host: &Model, parts: &Parts, mut error: Error) -> Error {
         error.place.body = Some(body);
         if error.kind == Kind::Memory && parts.is_cut(body) {
             // the host knows a piece only by its elements
-            let mesh: Option<&Mesh> = host.bodies[body].mesh.as_ref();
+            let mesh: Option<&Mesh> = host.bodies[body].mesh.as_deref();
             error.place.element = mesh.and_then(|mesh| mesh.first_of(parts.parts[part].piece));
         }
         let unknowns = parts.starts[part + 1] - parts.starts[part];

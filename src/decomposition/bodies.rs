@@ -28,7 +28,7 @@ pub fn parts(
         let assembled = given.body.assembled.as_ref().map(|k| k.measured_without(slight));
         all.assembled.push(assembled.transpose().map_err(|e| e.body(body))?);
         let mut split = Split { given, body, held, first: host.offsets[body], loose: &mut all.loose };
-        let pieces = given.mesh.as_ref().and_then(Mesh::pieces).filter(|_| given.body.assembled.is_some());
+        let pieces = given.mesh.as_deref().and_then(Mesh::pieces).filter(|_| given.body.assembled.is_some());
         let made = match (pieces, connected.components(body), given.body.stiffness.as_deref()) {
             (Some(pieces), ..) => split.pieces(pieces).map_err(|e| e.body(body))?,
             (None, Some(components), Some(k)) => split.components(components, k).map_err(|e| e.body(body))?,
@@ -124,7 +124,7 @@ impl Split<'_> {
         let given = self.given;
         let mut copies = filled(given.body.order, 0u32, WHAT)?;
         pieces.iter().flat_map(|piece| piece.dofs.iter()).for_each(|&dof| copies[dof as usize] += 1);
-        let first_of = |number| given.mesh.as_ref().and_then(|mesh| mesh.first_of(number));
+        let first_of = |number| given.mesh.as_deref().and_then(|mesh| mesh.first_of(number));
         let mut made = reserved(pieces.len(), WHAT)?;
         for (number, piece) in pieces.iter().enumerate() {
             let own = self.piece(number, piece, &copies).map_err(|mut error: Error| {

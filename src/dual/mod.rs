@@ -51,7 +51,7 @@ struct Subdomain {
     /// Rows of B that touch the body, ascending.
     rows: Vec<usize>,
     /// Those rows, over the unknowns of the body.
-    matrix: Csr,
+    matrix: Arc<Csr>,
     /// `B_p = T B`
     multiples: Multiples,
     /// `B K_p+ B'`, the part of F_p between T and T'; none: F_p is applied through K_p+.
@@ -85,7 +85,7 @@ pub struct BodyShare {
     /// Ratio of the unit of forces to the unit of K in `K_p+`, a power of two.
     pub by: f64,
     /// `F_p` of previous rows.
-    pub kept: Option<Kept>,
+    pub kept: Option<Box<Kept>>,
     /// Sizes of the body and its F_p.
     pub size: Size,
     /// F_p is applied matrix-free.
@@ -102,7 +102,7 @@ pub struct Draft {
 
 impl Draft {
     /// `matrix` is B, m x n.
-    pub fn new(parts: Vec<BodyShare>, matrix: &Csr) -> Self {
+    pub fn new(parts: Vec<BodyShare>, matrix: &Arc<Csr>) -> Self {
         let local = cut(parts.iter().map(|part| part.range.clone()).collect(), matrix);
         let (mut subdomains, mut distinct) =
             (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
@@ -156,15 +156,15 @@ impl Draft {
 
 impl Dual {
     /// The assembled operators of the bodies with their rows, for a dual problem with other rows.
-    pub fn into_operators(self) -> Vec<Option<Kept>> {
-        let kept = |s: Subdomain| Some(Kept::new(Multiples::of(&s.matrix).1, s.operator?));
+    pub fn into_operators(self) -> Vec<Option<Box<Kept>>> {
+        let kept = |s: Subdomain| Some(Box::new(Kept::new(Multiples::of(&s.matrix).1, s.operator?)));
         self.subdomains.into_iter().map(kept).collect()
     }
 
     /// Numbers of distinct rows of B over each of these ranges of all unknowns, ascending; rows that are multiples of each other
     /// count once. Row `tangential` is the first tangential row.
-    pub fn distinct_rows(ranges: Vec<Range<usize>>, matrix: &Csr, tangential: usize) -> Vec<DistinctRows> {
-        let count = |(rows, local): &(Vec<usize>, Csr)| {
+    pub fn distinct_rows(ranges: Vec<Range<usize>>, matrix: &Arc<Csr>, tangential: usize) -> Vec<DistinctRows> {
+        let count = |(rows, local): &(Vec<usize>, Arc<Csr>)| {
             let multiples = Multiples::of(local).0;
             let others = rows.partition_point(|row| *row < tangential);
             DistinctRows { rows: multiples.count, places: multiples.count_of_first(others) }
@@ -309,8 +309,11 @@ impl Dual {
 pub type InParallel<'a, T> = dyn Fn(usize, &(dyn Fn(usize) -> Result<T> + Sync)) -> Result<Vec<T>> + 'a;
 
 /// For bodies with these ranges, which cover all unknowns in ascending order: the rows of B that touch the body, and
-/// their entries over its unknowns.
-fn cut(ranges: Vec<Range<usize>>, matrix: &Csr) -> Vec<(Vec<usize>, Csr)> {
+/// their entries over its unknowns; a body that all rows touch alone shares B.
+fn cut(ranges: Vec<Range<usize>>, matrix: &Arc<Csr>) -> Vec<(Vec<usize>, Arc<Csr>)> {
+    if ranges.len() == 1 && matrix.ptr.windows(2).all(|ends| ends[0] < ends[1]) {
+        return vec![((0..matrix.rows()).collect(), Arc::clone(matrix))];
+    }
     let mut bodies: Vec<_> = ranges.iter().map(|range| (Vec::new(), Csr::empty(range.len()))).collect();
     for i in 0..matrix.rows() {
         let mut entries = matrix.row(i).peekable();
@@ -322,7 +325,7 @@ fn cut(ranges: Vec<Range<usize>>, matrix: &Csr) -> Vec<(Vec<usize>, Csr)> {
             rows.push(i);
         }
     }
-    bodies
+    bodies.into_iter().map(|(rows, local)| (rows, Arc::new(local))).collect()
 }
 
 #[cfg(test)]
@@ -339,7 +342,7 @@ mod tests {
         let of = |rows: &[usize], cols: usize, entries: &[&[(usize, f64)]]| {
             let mut local = Csr::empty(cols);
             entries.iter().for_each(|row| local.push_row(row.iter().copied()));
-            (rows.to_vec(), local)
+            (rows.to_vec(), Arc::new(local))
         };
         let expected = [
             of(&[0, 3], 2, &[&[(0, 1.0)], &[(1, 6.0)]]),
@@ -347,6 +350,6 @@ mod tests {
             of(&[2], 1, &[&[(0, 0.0)]]),
             of(&[0, 3], 1, &[&[(0, 4.0)], &[(0, 7.0)]]),
         ];
-        assert_eq!(cut(vec![0..2, 2..5, 5..6, 6..7], &matrix), expected);
+        assert_eq!(cut(vec![0..2, 2..5, 5..6, 6..7], &Arc::new(matrix)), expected);
     }
 }

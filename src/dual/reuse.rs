@@ -50,9 +50,9 @@ impl Sum for ColumnCounts {
 }
 
 impl Reuse {
-    pub fn of(kept: Option<Kept>, kplus: &GeneralizedInverse, rows: &Csr) -> Self {
+    pub fn of(kept: Option<Box<Kept>>, kplus: &GeneralizedInverse, rows: &Csr) -> Self {
         let m = rows.rows();
-        let Some(kept) = kept else { return Self::Nothing(m) };
+        let Some(kept) = kept.map(|kept| *kept) else { return Self::Nothing(m) };
         let old = matched(&kept.rows, rows);
         if m == kept.rows.rows() && old.iter().enumerate().all(|(i, old)| *old == Some(i)) {
             return Self::All(Mutex::new(Some(kept.operator)), m);

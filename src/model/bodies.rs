@@ -154,7 +154,7 @@ impl Model {
         }
         for (p, given) in self.bodies.iter().enumerate() {
             let body = &given.body;
-            if let Some(element) = given.mesh.as_ref().and_then(Mesh::first_missing) {
+            if let Some(element) = given.mesh.as_deref().and_then(Mesh::first_missing) {
                 let what = "the matrix of this element has not been given";
                 return Err(Error::new(Kind::State, what).body(p).element(element));
             }

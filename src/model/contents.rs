@@ -68,7 +68,7 @@ pub enum Change {
 pub struct GivenBody {
     pub body: Body,
     /// Its elements, if given by elements.
-    pub mesh: Option<Mesh>,
+    pub mesh: Option<Box<Mesh>>,
     /// How the host gave its matrix.
     pub form: Option<Form>,
     /// The host has overwritten borrowed values, and they were refused: there is no valid matrix.

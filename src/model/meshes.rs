@@ -25,8 +25,8 @@ impl Model {
         let serves = |mesh: &Mesh| {
             mesh.has_elements() && mesh.wanted() == Some(wanted) && mesh.connectivity().is(order, ptr, dof)
         };
-        if self.bodies[body].mesh.as_ref().is_some_and(serves) {
-            self.bodies[body].mesh.as_mut().map_or(Ok(()), Mesh::begin).map_err(|e| e.body(body))?;
+        if self.bodies[body].mesh.as_deref().is_some_and(serves) {
+            self.bodies[body].mesh.as_deref_mut().map_or(Ok(()), Mesh::begin).map_err(|e| e.body(body))?;
             self.bodies[body].without_matrix();
             return Ok(());
         }
@@ -36,7 +36,7 @@ impl Model {
         given.body.operator = None;
         given.form = Some(Form::Elements(ptr.windows(2).map(|pair| (pair[1] - pair[0]).pow(2)).sum()));
         given.spoiled = false;
-        given.mesh = Some(Mesh::new(connectivity));
+        given.mesh = Some(Box::new(Mesh::new(connectivity)));
         Ok(())
     }
 
@@ -111,7 +111,7 @@ impl Model {
             let what = "the elements have not been given: call feti_body_mesh before their matrices";
             Error::new(Kind::State, what).body(body)
         };
-        self.given(body)?.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)
+        self.given(body)?.mesh.as_deref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)
     }
 
     fn add<'a>(
@@ -126,14 +126,14 @@ impl Model {
             None => Some(self.cut_of(body).map_err(named)?),
         };
         let (tolerance, wanted) = (self.settings.symmetry_tolerance, self.settings.pieces);
-        let Some(mesh) = self.bodies[body].mesh.as_mut() else { return Ok(()) };
+        let Some(mesh) = self.bodies[body].mesh.as_deref_mut() else { return Ok(()) };
         if let Some(piece_of) = cut {
             mesh.cut(piece_of, wanted).map_err(named)?;
         }
         // checked before the pass is complete, so that a refused element may be given again
         let completes = mesh.is_complete_with(matrices.clone().count());
         let room = if completes { self.bodies[body].room_for_matrix().map_err(named)? } else { Vec::new() };
-        let Some(mesh) = self.bodies[body].mesh.as_mut() else { return Ok(()) };
+        let Some(mesh) = self.bodies[body].mesh.as_deref_mut() else { return Ok(()) };
         mesh.add(first, matrices, tolerance).map_err(|e| e.body(body))?;
         if completes {
             self.change(body, Change::Values)?.assemble(room);
@@ -175,7 +175,7 @@ impl GivenBody {
 
     /// Memory for the matrix of a body in addition to those of its pieces.
     pub fn room_for_matrix(&self) -> Result<Vec<f64>> {
-        if self.mesh.as_ref().is_some_and(Mesh::is_cut) {
+        if self.mesh.as_deref().is_some_and(Mesh::is_cut) {
             return Assembled::room_for(self.body.order);
         }
         Ok(Vec::new())
@@ -184,7 +184,7 @@ impl GivenBody {
     /// Completes a pass: the matrix of the body is that of its only piece, or the sum over all pieces, stored in `room`.
     pub fn assemble(&mut self, room: Vec<f64>) {
         self.without_matrix();
-        match self.mesh.as_ref().and_then(Mesh::pieces) {
+        match self.mesh.as_deref().and_then(Mesh::pieces) {
             Some([whole]) => self.body.stiffness = Some(Arc::clone(&whole.stiffness)),
             Some(pieces) => {
                 let parts =

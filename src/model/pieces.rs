@@ -40,7 +40,7 @@ impl Model {
         slot.body.operator = None;
         slot.form = Some(Form::Elements(given.val.len()));
         slot.spoiled = false;
-        slot.mesh = Some(mesh);
+        slot.mesh = Some(Box::new(mesh));
         let room = slot.room_for_matrix()?;
         slot.assemble(room);
         Ok(())

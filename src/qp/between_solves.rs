@@ -30,7 +30,8 @@ impl BetweenSolves {
         locked(&self.directions).take().map(|kept| *kept)
     }
 
-    pub fn keep_directions(&self, directions: Conjugate) {
+    pub fn keep_directions(&self, mut directions: Conjugate) {
+        directions.shrink();
         *locked(&self.directions) = Some(Box::new(directions));
     }
 }

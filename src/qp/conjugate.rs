@@ -89,6 +89,11 @@ impl Conjugate {
         self.pairs.is_empty()
     }
 
+    /// Releases unused memory.
+    pub fn shrink(&mut self) {
+        self.pairs.shrink_to_fit();
+    }
+
     pub fn forget(&mut self) {
         self.pairs.clear();
     }

@@ -55,7 +55,7 @@ impl Prepared {
                     let by = ratio_of_units(model, island, p);
                     let metric = values[range.clone()].iter().map(|d| (d * by).min(f64::MAX)).collect();
                     let carried = carried[first..end].iter().map(|j| j - range.start).collect();
-                    pilots[p] = Some(Pilots { metric, carried });
+                    pilots[p] = Some(Box::new(Pilots { metric, carried }));
                 }
             }
             let mut own = DualRows::of(island, values, coupled(&model.settings))?;

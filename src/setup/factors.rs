@@ -11,7 +11,7 @@ use crate::body::{
     input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Pilots, Plan, Symbolic,
 };
 use crate::certificate::grounded;
-use crate::dual::{DistinctRows, Kept, Size};
+use crate::dual::{DistinctRows, Size};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Multiple, Symmetric};
 use crate::model::Model;
@@ -115,7 +115,7 @@ impl Prepared {
                 let k = Multiple { matrix: Arc::clone(matrix), by: 1.0 / model.bodies[p].body.unit() };
                 made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(p))?;
             }
-            Ok((made, grounded_in(matrix.as_ref(), pilots.as_ref())?))
+            Ok((made, grounded_in(matrix.as_ref(), pilots.as_deref())?))
         };
         watch.every_body(&part, make, |k, (made, grounded)| {
             let (p, bytes) = (own[k].0, own[k].1.saturating_sub(made.inverse.bytes_saved()));
@@ -131,7 +131,7 @@ impl Prepared {
             let of = self.bodies[q].inverse.as_ref().map(share).transpose()?;
             self.bodies[p].symbolic = symbolic;
             let grounded =
-                grounded_in(model.bodies[p].body.stiffness.as_ref(), self.bodies[p].pilots.as_ref())?;
+                grounded_in(model.bodies[p].body.stiffness.as_ref(), self.bodies[p].pilots.as_deref())?;
             self.bodies[p].inverse = of.map(|(bytes, kplus)| {
                 let kplus = Arc::new(kplus);
                 Inverse { unit, kplus, grounded, bytes, operator: None }
@@ -286,7 +286,7 @@ impl Prepared {
         let operators = Operators::new(settings, sizes, there.saturating_add(more));
         let more = more.saturating_add(operators.bytes);
         let inverses = self.bodies.iter().filter_map(|own| own.inverse.as_ref());
-        let kept: usize = inverses.filter_map(|inverse| inverse.operator.as_ref()).map(Kept::bytes).sum();
+        let kept: usize = inverses.filter_map(|inverse| inverse.operator.as_ref()).map(|kept| kept.bytes()).sum();
         if kept > 0 && check_memory(settings, there, more.saturating_add(kept)).is_err() {
             self.bodies.iter_mut().filter_map(|own| own.inverse.as_mut()).for_each(|of| of.operator = None);
         }

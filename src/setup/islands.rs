@@ -16,6 +16,7 @@ use crate::platform::memory::{copied, headroom, reserved, zeros};
 const WHAT: &str = "groups of bodies";
 
 /// Bodies joined by rows, with their own numbering: unknowns body after body, rows in the order of the host.
+#[derive(Clone)]
 pub struct Island {
     /// Numbers of the bodies, ascending.
     pub bodies: Vec<usize>,
@@ -23,13 +24,14 @@ pub struct Island {
     pub ranges: Vec<Range<usize>>,
     pub contact: Members,
     pub equalities: Members,
-    pub friction: Nodes,
+    /// Shared by the islands without friction.
+    pub friction: Arc<Nodes>,
     /// 2^p, p = floor(log2 max K_ii), force / length: forces are divided by it.
     pub unit: f64,
 }
 
 /// Rows of one kind in an island.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Members {
     /// Their numbers among all rows of this kind, ascending.
     pub numbers: Vec<usize>,
@@ -38,7 +40,7 @@ pub struct Members {
 }
 
 /// Nodes with friction in an island that may carry a tangential force.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Nodes {
     /// Their numbers among all nodes, ascending.
     pub numbers: Vec<usize>,
@@ -148,11 +150,11 @@ impl Island {
     /// Takes over the right-hand sides of the host, without those that are rounding, and its laws of friction.
     pub fn refresh(&mut self, lengths: &Lengths) {
         let model = lengths.model();
-        for (members, kind) in [
-            (&mut self.contact, RowKind::Inequality),
-            (&mut self.equalities, RowKind::Equality),
-            (&mut self.friction.tangential, RowKind::Tangential),
-        ] {
+        let mut friction = Some(&mut self.friction).filter(|of| !of.numbers.is_empty()).map(Arc::make_mut);
+        let tangential = friction.as_mut().map(|of| (&mut of.tangential, RowKind::Tangential));
+        let others =
+            [(&mut self.contact, RowKind::Inequality), (&mut self.equalities, RowKind::Equality)];
+        for (members, kind) in others.into_iter().chain(tangential) {
             let rows = model.rows(kind);
             let Members { numbers, rows: own } = members;
             own.rounding.resize(numbers.len(), 0.0);
@@ -162,7 +164,8 @@ impl Island {
                 *taken = if *c == rows.rhs[i] { 0.0 } else { rows.rhs[i].abs() };
             }
         }
-        for (own, &number) in self.friction.nodes.iter_mut().zip(&self.friction.numbers) {
+        let nodes = friction.into_iter().flat_map(|of| of.nodes.iter_mut().zip(&of.numbers));
+        for (own, &number) in nodes {
             let (coefficient, bound) = law(model, number);
             *own = FrictionNode { coefficient, bound, ..*own };
         }
@@ -214,7 +217,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         of_body.iter_mut().for_each(|island| *island = joint[*island]);
         count = all;
     }
-    let mut islands: Vec<Island> = (0..count).map(|_| Island::empty()).collect();
+    let mut islands = vec![Island::empty(); count];
     let mut start = reserved(bodies, WHAT)?;
     for (p, &island) in of_body.iter().enumerate() {
         let island = &mut islands[island];
@@ -231,7 +234,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
                 numbers[of_body[body_of(j)]].push(i);
             }
         }
-        for (island, numbers) in islands.iter_mut().zip(numbers) {
+        for (island, numbers) in islands.iter_mut().zip(numbers).filter(|(_, own)| !own.is_empty()) {
             let rows = restricted(rows, &numbers, island.unknowns(), place)?;
             *[&mut island.contact, &mut island.equalities][kind] = Members { numbers, rows };
         }
@@ -271,7 +274,7 @@ fn nodes(
     for &number in acting {
         let Some(first) = unknowns_of(model, number).next() else { continue };
         let island = &mut islands[island_of(first)];
-        let own = &mut island.friction;
+        let own = Arc::make_mut(&mut island.friction);
         let first = own.tangential.numbers.len();
         let given = all.nodes[number];
         own.tangential.numbers.extend(given.rows().filter(|&row| all.counts(row)));
@@ -282,9 +285,9 @@ fn nodes(
         own.nodes.push(FrictionNode { normal, first, count, coefficient, bound });
     }
     for island in islands.iter_mut().filter(|island| !island.friction.numbers.is_empty()) {
-        let numbers = std::mem::take(&mut island.friction.tangential.numbers);
-        let rows = restricted(&all.rows, &numbers, island.unknowns(), place)?;
-        island.friction.tangential = Members { numbers, rows };
+        let unknowns = island.unknowns();
+        let Members { numbers, rows } = &mut Arc::make_mut(&mut island.friction).tangential;
+        *rows = restricted(&all.rows, numbers, unknowns, place)?;
     }
     Ok(())
 }

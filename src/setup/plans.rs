@@ -23,7 +23,7 @@ pub(super) fn plans(
     let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
     let find = |k: usize| {
         let (p, body) = (pending[k], &model.bodies[pending[k]].body);
-        plan(body, bodies[p].pilots.clone(), tolerance, model.is_piece(p))
+        plan(body, bodies[p].pilots.as_deref().cloned(), tolerance, model.is_piece(p))
             .map_err(|e| of_coordinates(body, e).body(p))
     };
     let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();

@@ -28,7 +28,7 @@ pub struct PreparedBody {
     of: BodyRevisions,
     pub inverse: Option<Inverse>,
     /// Its carried unknowns: K+ holds them.
-    pub pilots: Option<Pilots>,
+    pub pilots: Option<Box<Pilots>>,
     /// The last analysis of a matrix with this pattern.
     pub symbolic: Option<Arc<Symbolic>>,
     /// Keys of pattern and values, if already computed.
@@ -44,7 +44,7 @@ pub struct Inverse {
     pub grounded: Arc<[u32]>,
     pub bytes: usize,
     /// `F_p` of the previous rows, while there is no dual problem.
-    pub operator: Option<Kept>,
+    pub operator: Option<Box<Kept>>,
 }
 
 /// The dual problems of all islands, ready for any load and gap.
@@ -118,7 +118,7 @@ impl Prepared {
     }
 
     /// Takes the carried unknowns of every body; drops K+ of those that hold others.
-    pub(super) fn carry(&mut self, pilots: Vec<Option<Pilots>>) {
+    pub(super) fn carry(&mut self, pilots: Vec<Option<Box<Pilots>>>) {
         for (own, pilots) in self.bodies.iter_mut().zip(pilots) {
             own.inverse.take_if(|_| own.pilots != pilots);
             own.pilots = pilots;

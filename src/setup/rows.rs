@@ -1,5 +1,7 @@
 //! The rows of the dual problem of an island, made from the host's rows: scaled, one for each group of parallel rows, decoupled.
 
+use std::sync::Arc;
+
 use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
 use crate::error::Result;
 use crate::linalg::vector::NOISE;
@@ -11,9 +13,9 @@ use crate::setup::scaling::Scaling;
 /// Rows of the dual, and their relation to the host's rows.
 pub struct DualRows {
     /// One row per group of parallel rows of `S [B; H]`.
-    pub scaled: Csr,
+    pub scaled: Arc<Csr>,
     /// B' of `scaled = L B'`, from which F and G are formed.
-    pub matrix: Csr,
+    pub matrix: Arc<Csr>,
     /// Diagonal of C' with `2^p S C S = L C'L'`: 1/k without unit, 0 for rigid rows.
     pub compliance: Vec<f64>,
     /// `D / 2^p` over the unknowns of the island.
@@ -94,9 +96,12 @@ impl DualRows {
         let nodes: Vec<_> = nodes.collect();
         let given =
             UnitRows { matrix: &scaled, equalities, nodes: &nodes, compliance: &compliance, metric: &metric };
-        let (decoupling, matrix) = if coupled { Decoupling::none(&scaled) } else { Decoupling::of(given)? };
+        let (decoupling, matrix) =
+            if coupled { (Decoupling::none(scaled.rows()), None) } else { Decoupling::of(given)? };
         let compliance = decoupling.compliance(&compliance);
         let uneven = is_uneven(&scaled, &metric, island);
+        let scaled = Arc::new(scaled);
+        let matrix = matrix.map_or_else(|| Arc::clone(&scaled), Arc::new);
         let scaling = Scaling { unit: island.unit, scale, grouping, decoupling };
         Ok(Self { scaled, matrix, compliance, metric, scaling, coupled, contact, tangential, uneven })
     }

@@ -33,7 +33,7 @@ pub struct Answer {
     /// Islands without an answer.
     pub failed: Vec<bool>,
     /// G' of each island without resistance that is noise of the data, if it differs.
-    pub cleaned: Vec<Option<Csr>>,
+    pub cleaned: Vec<Option<Box<Csr>>>,
 }
 
 impl Answer {

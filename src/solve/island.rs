@@ -35,7 +35,7 @@ pub struct Solved {
     /// The motion of a body that slides farthest, along rows that hardly resist it.
     pub slide: Option<Slide>,
     /// G' without resistance that is noise of the data, if bodies would slide along it.
-    pub cleaned: Option<Csr>,
+    pub cleaned: Option<Box<Csr>>,
     /// The second tries made.
     pub tries: Tries,
     /// Time for recovery and certification of answers, including the last.
@@ -58,7 +58,7 @@ enum Tried {
     /// Bodies slide along rows that resist them by no more than the accuracy of the data: G' without this resistance, and
     /// the forces of this answer.
     Slides {
-        cleaned: Csr,
+        cleaned: Box<Csr>,
         x: Vec<f64>,
         below: f64,
     },

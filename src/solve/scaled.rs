@@ -22,7 +22,7 @@ pub struct Scaled {
     /// The part removed from the loads because nothing holds it.
     pub unheld: Option<Taken>,
     /// G' without the resistance to slides that are noise of the host's data.
-    pub cleaned: Option<Csr>,
+    pub cleaned: Option<Box<Csr>>,
     /// The motion along which forces leave a part of the load, amplitudes over the modes of the dual; empty if there is none.
     pub along: Vec<f64>,
 }
@@ -65,7 +65,7 @@ impl Scaled {
 
     /// G'
     fn coarse<'a>(&'a self, ready: &'a Ready) -> &'a Csr {
-        self.cleaned.as_ref().unwrap_or(&ready.dual.coarse)
+        self.cleaned.as_deref().unwrap_or(&ready.dual.coarse)
     }
 
     pub fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {

@@ -235,7 +235,7 @@ impl Slides {
 
     /// `G'` without the resistance to slides of at most `accuracy`: of rows with a force, and of other rows that resist no
     /// more. None if there is no such resistance.
-    pub fn without_noise(&self, recovery: &Recovery, accuracy: f64) -> Option<Csr> {
+    pub fn without_noise(&self, recovery: &Recovery, accuracy: f64) -> Option<Box<Csr>> {
         let (ready, dual) = (recovery.ready, &recovery.ready.dual);
         let is_noise = |slide: &usize| self.all[*slide].resisted <= accuracy;
         if !(0..self.all.len()).any(|slide| is_noise(&slide)) {
@@ -269,7 +269,7 @@ impl Slides {
             }
             cleaned.push_row(row.into_iter().filter(|(_, v)| *v != 0.0));
         }
-        changed.then_some(cleaned)
+        changed.then(|| Box::new(cleaned))
     }
 
     /// Row i of the dual resists a slide by at most `accuracy` of its terms.

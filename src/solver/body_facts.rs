@@ -159,7 +159,7 @@ impl Problem {
             return Err(missing());
         }
         let mut piece_of = filled(given.body.order, 0, WHAT)?;
-        let pieces = given.mesh.as_ref().and_then(Mesh::pieces).unwrap_or_default();
+        let pieces = given.mesh.as_deref().and_then(Mesh::pieces).unwrap_or_default();
         for (number, piece) in pieces.iter().enumerate().rev() {
             piece.dofs.iter().for_each(|&dof| piece_of[dof as usize] = number as u32);
         }
@@ -172,7 +172,7 @@ impl Problem {
     pub fn held_forces(&self, body: usize, n: usize) -> Result<Vec<f64>> {
         let given = self.model.given(body)?;
         let missing = || Error::new(Kind::State, "the body was not given by its elements").body(body);
-        let mesh = given.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)?;
+        let mesh = given.mesh.as_deref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)?;
         let (u, most) = (self.displacement(body)?, mesh.held_numbers().max(given.body.order));
         if n > most {
             let what = format!(

@@ -68,7 +68,7 @@ impl Problem {
             let tangential = ready.island.friction.tangential.gather(&answer.tangential);
             let answer = Candidate { u: &[], lambda: &lambda, mu: &mu, tangential: &tangential };
             let dual = &ready.dual;
-            let coarse = cleaned.as_ref().unwrap_or(&dual.coarse);
+            let coarse = cleaned.as_deref().unwrap_or(&dual.coarse);
             let held = without_force(ready, coarse, &ready.island.loads(self.solved())?, answer)?;
             let motions = AnswerFace::new(coarse, &dual.blocks, &held, dual.rounding())?.undetermined()?;
             all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));

@@ -84,7 +84,7 @@ impl Model {
                     "the body is given by functions of the host (feti_body_operator), which a file cannot contain";
                 return Err(Error::new(Kind::Unsupported, what).body(p));
             }
-            if let Some(element) = given.mesh.as_ref().and_then(Mesh::first_missing) {
+            if let Some(element) = given.mesh.as_deref().and_then(Mesh::first_missing) {
                 let what =
                     "the matrix of this element has not been given: a file cannot contain an incomplete body";
                 return Err(Error::new(Kind::State, what).body(p).element(element));

@@ -91,12 +91,12 @@ impl Whole {
             (None, part) => part.and_then(|p| model.bodies[p].body.k()).map_or(0.0, |k| k.largest_diagonal()),
         };
         let unit = power_of_two_below(bodies.iter().zip(&part_of).map(stiffness).fold(0.0, f64::max));
-        let Nodes { numbers, nodes, .. } = &cut.friction;
-        let friction = Nodes {
+        let Nodes { numbers, nodes, .. } = &*cut.friction;
+        let friction = Arc::new(Nodes {
             numbers: numbers.clone(),
             nodes: nodes.clone(),
             tangential: of_host(RowKind::Tangential)?,
-        };
+        });
         let island = Island { bodies, ranges, contact, equalities, friction, unit };
         let bodies = threads::run(model.threads(), island.bodies.len(), |k| {
             let (body, part) = (island.bodies[k], part_of[k]);
