@@ -1,4 +1,5 @@
-//! Dense symmetric matrices, the lower triangle in square tiles: local dual operators F_p.
+//! Dense symmetric matrices, the lower triangle: local dual operators F_p. Small matrices are stored by rows, others in
+//! square tiles.
 //!
 //! Zeros before the first row and column fill the order up to a multiple of 8. In every column of tiles, the tiles on and
 //! below the diagonal are consecutive, so that the product reads memory sequentially in whole cache lines; the tiles on
@@ -13,12 +14,14 @@ mod x86;
 
 use crate::error::Result;
 use crate::linalg::{Entries, Matrix, Operator};
-use crate::platform::memory::filled;
+use crate::platform::memory::{filled, zeros};
+
+const WHAT: &str = "an explicit dual operator";
 
 /// Rows and columns of a tile: one cache line.
 const SIDE: usize = 8;
 
-/// Smaller matrices mostly consist of diagonal tiles: their entries are processed one by one.
+/// Smaller matrices would mostly consist of diagonal tiles: their entries are stored and processed one by one.
 const SMALL: usize = 128;
 
 /// Consecutive entries of a column, or of a vector.
@@ -33,37 +36,57 @@ struct Tile([Line; SIDE]);
 #[derive(Debug, Clone, PartialEq)]
 pub struct Packed {
     order: usize,
-    /// Number of columns of tiles: order / 8, rounded up.
-    columns: usize,
-    tiles: Vec<Tile>,
+    lower: Lower,
+}
+
+/// The lower triangle.
+#[derive(Debug, Clone, PartialEq)]
+enum Lower {
+    Rows(Vec<f64>),
+    Tiles(Vec<Tile>),
 }
 
 impl Packed {
     /// Bytes of a packed matrix of this order.
     pub fn bytes(order: usize) -> usize {
+        if order < SMALL {
+            return row(order) * size_of::<f64>();
+        }
         tiles(order.div_ceil(SIDE)).saturating_mul(size_of::<Tile>())
     }
 
     pub fn zeros(order: usize) -> Result<Self> {
-        let columns = order.div_ceil(SIDE);
-        let tiles = filled(tiles(columns), Tile([[0.0; SIDE]; SIDE]), "an explicit dual operator")?;
-        Ok(Self { order, columns, tiles })
+        if order < SMALL {
+            return Ok(Self { order, lower: Lower::Rows(zeros(row(order), WHAT)?) });
+        }
+        Self::in_tiles(order)
+    }
+
+    fn in_tiles(order: usize) -> Result<Self> {
+        let tiles = filled(tiles(order.div_ceil(SIDE)), Tile([[0.0; SIDE]; SIDE]), WHAT)?;
+        Ok(Self { order, lower: Lower::Tiles(tiles) })
     }
 
     /// `A_ij += value`, for i and j in any order.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
-        let (i, j) = (self.padded(i.max(j)), self.padded(i.min(j)));
-        let tile = self.tile(i / SIDE, j / SIDE);
-        self.tiles[tile].0[j % SIDE][i % SIDE] += value;
-        if i / SIDE == j / SIDE && i != j {
-            self.tiles[tile].0[i % SIDE][j % SIDE] += value;
+        let (i, j, order) = (i.max(j), i.min(j), self.order);
+        match &mut self.lower {
+            Lower::Rows(entries) => entries[row(i) + j] += value,
+            Lower::Tiles(tiles) => {
+                let (i, j) = (padded(order, i), padded(order, j));
+                let tile = &mut tiles[tile(order, i / SIDE, j / SIDE)].0;
+                tile[j % SIDE][i % SIDE] += value;
+                if i / SIDE == j / SIDE && i != j {
+                    tile[i % SIDE][j % SIDE] += value;
+                }
+            }
         }
     }
 
     /// `A_ij += gram_kl` for i = `indices[k]`, j = `indices[l]`, k >= l: n ascending `indices`, `gram` n x n by columns,
     /// of which the lower triangle is read.
     pub fn add_lower(&mut self, indices: &[usize], gram: &[f64]) {
-        let (n, pad) = (indices.len(), self.padded(0));
+        let (n, pad) = (indices.len(), padded(self.order, 0));
         let mut start = 0;
         for columns in indices.chunk_by(|a, b| (pad + a) / SIDE == (pad + b) / SIDE) {
             self.add_columns(&indices[start..], columns.len(), &gram[start * (n + 1)..], n);
@@ -78,13 +101,18 @@ impl Packed {
         for (l, &j) in own.iter().enumerate() {
             (l..width).for_each(|k| self.add(indices[k], j, gram[l * stride + k]));
         }
-        let (pad, mut start) = (self.padded(0), width);
+        let (pad, mut start) = (padded(self.order, 0), width);
         for rows in below.chunk_by(|a, b| (pad + a) / SIDE == (pad + b) / SIDE) {
-            let tile = self.tile((pad + rows[0]) / SIDE, (pad + own[0]) / SIDE);
             for (l, &j) in own.iter().enumerate() {
-                let line = &mut self.tiles[tile].0[(pad + j) % SIDE];
-                let gram = &gram[l * stride + start..][..rows.len()];
-                rows.iter().zip(gram).for_each(|(i, v)| line[(pad + i) % SIDE] += v);
+                let gram = rows.iter().zip(&gram[l * stride + start..]);
+                match &mut self.lower {
+                    Lower::Rows(entries) => gram.for_each(|(&i, v)| entries[row(i) + j] += v),
+                    Lower::Tiles(tiles) => {
+                        let tile = tile(self.order, (pad + rows[0]) / SIDE, (pad + j) / SIDE);
+                        let line = &mut tiles[tile].0[(pad + j) % SIDE];
+                        gram.for_each(|(i, v)| line[(pad + i) % SIDE] += v);
+                    }
+                }
             }
             start += rows.len();
         }
@@ -92,37 +120,53 @@ impl Packed {
 
     /// `A <- -A`
     pub fn negate(&mut self) {
-        self.tiles.iter_mut().for_each(|tile| tile.0.as_flattened_mut().iter_mut().for_each(|v| *v = -*v));
-    }
-
-    pub fn get(&self, i: usize, j: usize) -> f64 {
-        let (i, j) = (self.padded(i.max(j)), self.padded(i.min(j)));
-        self.tiles[self.tile(i / SIDE, j / SIDE)].0[j % SIDE][i % SIDE]
-    }
-
-    /// `y = A x`, row by row of the lower triangle.
-    fn apply_by_entries(&self, x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        for i in 0..self.order {
-            let mut sum = self.get(i, i) * x[i];
-            for j in 0..i {
-                let a = self.get(i, j);
-                sum += a * x[j];
-                y[j] += a * x[i];
-            }
-            y[i] += sum;
+        let negate = |values: &mut [f64]| values.iter_mut().for_each(|v| *v = -*v);
+        match &mut self.lower {
+            Lower::Rows(entries) => negate(entries),
+            Lower::Tiles(tiles) => tiles.iter_mut().for_each(|tile| negate(tile.0.as_flattened_mut())),
         }
     }
 
-    /// Number of a row including the zeros before the first row.
-    fn padded(&self, i: usize) -> usize {
-        self.columns * SIDE - self.order + i
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        let (i, j) = (i.max(j), i.min(j));
+        match &self.lower {
+            Lower::Rows(entries) => entries[row(i) + j],
+            Lower::Tiles(tiles) => {
+                let (i, j) = (padded(self.order, i), padded(self.order, j));
+                tiles[tile(self.order, i / SIDE, j / SIDE)].0[j % SIDE][i % SIDE]
+            }
+        }
     }
+}
 
-    /// Position of tile (i, j), j <= i.
-    fn tile(&self, i: usize, j: usize) -> usize {
-        tiles(self.columns) - tiles(self.columns - j) + i - j
+/// Position of the first entry of row i of a lower triangle by rows.
+fn row(i: usize) -> usize {
+    i * (i + 1) / 2
+}
+
+/// `y = A x`, row by row of the lower triangle.
+fn product_by_rows(entries: &[f64], x: &[f64], y: &mut [f64]) {
+    y.fill(0.0);
+    for i in 0..x.len() {
+        let (own, diagonal) = (&entries[row(i)..][..i], entries[row(i) + i]);
+        let mut sum = diagonal * x[i];
+        for (j, a) in own.iter().enumerate() {
+            sum += a * x[j];
+            y[j] += a * x[i];
+        }
+        y[i] += sum;
     }
+}
+
+/// Number of a row including the zeros before the first row.
+fn padded(order: usize, i: usize) -> usize {
+    order.next_multiple_of(SIDE) - order + i
+}
+
+/// Position of tile (i, j), j <= i.
+fn tile(order: usize, i: usize, j: usize) -> usize {
+    let columns = order.div_ceil(SIDE);
+    tiles(columns) - tiles(columns - j) + i - j
 }
 
 /// Number of tiles for this number of columns.
@@ -137,15 +181,14 @@ impl Operator for Packed {
 
     /// `y = A x`; every entry is read once.
     fn apply(&self, x: &[f64], y: &mut [f64]) {
-        if self.order < SMALL {
-            self.apply_by_entries(x, y);
-        } else {
-            product::product(&self.tiles, x, y);
+        match &self.lower {
+            Lower::Rows(entries) => product_by_rows(entries, x, y),
+            Lower::Tiles(tiles) => product::product(tiles, x, y),
         }
     }
 
     fn bytes_kept(&self) -> usize {
-        size_of_val(&self.tiles[..])
+        Self::bytes(self.order)
     }
 }
 
@@ -181,7 +224,11 @@ mod tests {
     }
 
     fn filled(order: usize) -> Packed {
-        let mut a = Packed::zeros(order).unwrap();
+        with_entries(Packed::zeros(order).unwrap())
+    }
+
+    fn with_entries(mut a: Packed) -> Packed {
+        let order = a.order;
         (0..order).for_each(|i| (0..=i).for_each(|j| a.add(j, i, entry(i, j))));
         a
     }
@@ -206,18 +253,19 @@ mod tests {
 
     /// The products by every set of instructions of this processor; prints their number.
     fn products(a: &Packed, x: &[f64]) -> Vec<Vec<f64>> {
+        let Lower::Tiles(tiles) = &a.lower else { panic!("no tiles") };
         let mut y = vec![vec![f64::NAN; a.order]; 3];
-        product::product_by(&kernel::Portable, &a.tiles, x, &mut y[0]);
+        product::product_by(&kernel::Portable, tiles, x, &mut y[0]);
         let mut sets = 1;
         #[cfg(target_arch = "x86_64")]
         {
             if let Some(avx2) = x86::Avx2::detect() {
-                product::product_by(&avx2, &a.tiles, x, &mut y[sets]);
+                product::product_by(&avx2, tiles, x, &mut y[sets]);
                 sets += 1;
             }
             #[cfg(avx512)]
             if let Some(avx512) = avx512::Avx512::detect() {
-                product::product_by(&avx512, &a.tiles, x, &mut y[sets]);
+                product::product_by(&avx512, tiles, x, &mut y[sets]);
                 sets += 1;
             }
         }
@@ -228,7 +276,7 @@ mod tests {
     #[test]
     fn all_sets_of_instructions_give_the_same_bits_and_the_dense_product_to_rounding() {
         for order in orders().filter(|order| *order > 0) {
-            let mut a = filled(order);
+            let mut a = with_entries(Packed::in_tiles(order).unwrap());
             (0..order).for_each(|i| a.add(i, i, 0.1 * i as f64 + 1.0 / 3.0));
             let x: Vec<f64> = (0..order).map(|i| (1.0 + i as f64).sin()).collect();
             let all = products(&a, &x);
@@ -246,7 +294,8 @@ mod tests {
         for order in orders() {
             let x: Vec<f64> = (0..order).map(|i| (i % 5) as f64 - 2.0).collect();
             let expected = dense_product(order, &x);
-            assert!(products(&filled(order), &x).iter().all(|y| *y == expected), "{order}");
+            let a = with_entries(Packed::in_tiles(order).unwrap());
+            assert!(products(&a, &x).iter().all(|y| *y == expected), "{order}");
         }
     }
 
@@ -254,7 +303,7 @@ mod tests {
     fn a_block_added_at_once_equals_its_entries_added_one_by_one() {
         let lists: [&[usize]; 6] =
             [&[], &[40], &[0, 1, 2, 3, 4], &[3, 4, 5, 9, 17, 18, 19, 20, 21, 22, 30, 40], &[0, 40], &[7, 8]];
-        for order in [41, 48, 64] {
+        for order in [41, 48, 64, SMALL] {
             for indices in lists.iter().copied().chain([(0..41).collect::<Vec<_>>().as_slice()]) {
                 let n = indices.len();
                 // the upper triangle must not be read
