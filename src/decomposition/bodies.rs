@@ -194,10 +194,8 @@ pub fn loads(host: &Model, parts: &Parts, copies: &[Option<Copies>], model: &mut
             model.bodies[part].body.load = Some(zeros(model.bodies[part].body.order, "a load")?);
         }
         for (dof, &force) in load.iter().enumerate().filter(|(_, force)| **force != 0.0) {
-            let (mut left, mut all) = (force, copies.all(dof).iter().peekable());
-            while let Some(&(part, place)) = all.next() {
-                let part = part as usize;
-                let i = place - parts.starts[part];
+            let (mut left, mut all) = (force, copies.all(dof).peekable());
+            while let Some((part, i)) = all.next() {
                 let own = if all.peek().is_some() { force * parts.place(part, i).1 } else { left };
                 left -= own;
                 model.bodies[part].body.load.iter_mut().for_each(|load| load[i] = own);

@@ -11,8 +11,8 @@ const SLACK: f64 = 1e-3;
 /// The copies of every unknown of a body with several parts.
 pub struct Copies {
     ptr: Vec<usize>,
-    /// The part, and the unknown's number among all unknowns of all parts; in the order of the parts.
-    copies: Vec<(u32, usize)>,
+    /// The part, and the unknown's number in it; in the order of the parts.
+    copies: Vec<(u32, u32)>,
 }
 
 impl Copies {
@@ -29,16 +29,17 @@ impl Copies {
         let (mut next, mut copies) = (ptr.clone(), filled(ptr[order], (0, 0), WHAT)?);
         for part in parts.of(body) {
             for (i, &dof) in dofs(part).enumerate() {
-                copies[next[dof as usize]] = (part as u32, parts.starts[part] + i);
+                copies[next[dof as usize]] = (part as u32, i as u32);
                 next[dof as usize] += 1;
             }
         }
         Ok(Some(Self { ptr, copies }))
     }
 
-    /// Parts and unknowns of the copies of an unknown.
-    pub fn all(&self, dof: usize) -> &[(u32, usize)] {
-        &self.copies[self.ptr[dof]..self.ptr[dof + 1]]
+    /// Parts of the copies of an unknown, and the copies' numbers in them.
+    pub fn all(&self, dof: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let copies = &self.copies[self.ptr[dof]..self.ptr[dof + 1]];
+        copies.iter().map(|&(part, i)| (part as usize, i as usize))
     }
 
     /// Number of unknowns of the body.
@@ -49,10 +50,9 @@ impl Copies {
     /// The copy on which rows of the host act: the first that is not much softer than another, so all unknowns of a node
     /// get the same part.
     pub fn first_stiff(&self, parts: &Parts, dof: usize) -> usize {
-        let share =
-            |(part, place): (u32, usize)| parts.place(part as usize, place - parts.starts[part as usize]).1;
-        let all = self.all(dof);
-        let most = all.iter().map(|copy| share(*copy)).fold(0.0, f64::max);
-        all.iter().find(|copy| share(**copy) >= SLACK * most).map_or(0, |copy| copy.1)
+        let share = |(part, i): (usize, usize)| parts.place(part, i).1;
+        let most = self.all(dof).map(share).fold(0.0, f64::max);
+        let stiff = self.all(dof).find(|copy| share(*copy) >= SLACK * most);
+        stiff.map_or(0, |(part, i)| parts.starts[part] + i)
     }
 }

@@ -34,8 +34,10 @@ pub fn rows(
         matrix.push_row([(place(*before), 1.0), (place(*after), -1.0)]);
     }
     for copies in copies.iter().flatten() {
-        for pair in (0..copies.order()).flat_map(|dof| copies.all(dof).windows(2)) {
-            matrix.push_row([(pair[0].1, 1.0), (pair[1].1, -1.0)]);
+        let pairs = |dof| copies.all(dof).zip(copies.all(dof).skip(1));
+        for (before, after) in (0..copies.order()).flat_map(pairs) {
+            let [before, after] = [before, after].map(|(part, i)| parts.starts[part] + i);
+            matrix.push_row([(before, 1.0), (after, -1.0)]);
         }
     }
     let all = matrix.rows();

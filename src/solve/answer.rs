@@ -1,13 +1,15 @@
 //! Combines the answers of all islands.
 
+use std::time::Duration;
+
 use crate::certificate::{Certificate, FrictionState, RowJudgement};
 use crate::constraints::{RowKind, RowSet};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::Csr;
 use crate::model::Model;
 use crate::platform::memory::zeros;
 use crate::setup::{Members, Prepared, Ready};
-use crate::solve::island::{Ends, Solved};
+use crate::solve::island::Solved;
 use crate::solve::recovery::{Ending, Recovered};
 use crate::solve::report::{Outcome, Report, RowState};
 use crate::solve::slides::Slide;
@@ -36,18 +38,27 @@ pub struct Answer {
     pub cleaned: Vec<Option<Box<Csr>>>,
 }
 
-impl Answer {
-    /// None if no island has an answer.
-    pub fn new(model: &Model, prepared: &Prepared, ends: Ends) -> Result<Option<Self>> {
-        if ends.iter().all(std::result::Result::is_err) {
-            return Ok(None);
-        }
+/// How the islands ended, each with an answer or with the named reason why it has none; of the answers only what
+/// [`Answer`] keeps.
+pub struct Ends<'a> {
+    model: &'a Model,
+    islands: &'a [Ready],
+    answer: Answer,
+    certificate: Option<Certificate>,
+    /// The first reason.
+    pub failure: Option<Error>,
+    /// Time for recovery and certification.
+    pub recovery: Duration,
+}
+
+impl<'a> Ends<'a> {
+    pub fn new(model: &'a Model, prepared: &'a Prepared) -> Result<Self> {
         let counts = model.sizes();
         let rows = [&model.contact, &model.equalities];
         let alone = [RowKind::Inequality, RowKind::Equality]
             .map(|kind| rows[kind as usize].forces_without_entries(kind));
         let [lambda, mu] = alone.map(Iterator::collect);
-        let mut answer = Self {
+        let answer = Answer {
             report: Report::new(model, prepared)?,
             u: zeros(counts.dofs, "an answer")?,
             lambda,
@@ -59,32 +70,46 @@ impl Answer {
             gaps: Vec::new(),
             states: vec![RowState::Open; counts.rows],
             force_errors: vec![f64::NAN; counts.bodies],
-            failed: ends.iter().map(std::result::Result::is_err).collect(),
+            failed: Vec::new(),
             cleaned: Vec::new(),
         };
-        let mut all: Option<Certificate> = None;
-        for (ready, end) in prepared.done(model)?.islands.iter().zip(ends) {
-            match end {
-                Ok(mut solved) => {
-                    answer.cleaned.push(solved.cleaned.take());
-                    let own = named(model, ready, solved.ending.judgement.certificate);
-                    if solved.outcome == Outcome::Marginal && solved.ending.judgement.travelled {
-                        answer.report.travelled = own.equilibrium.place;
-                    }
-                    match &mut all {
-                        None => all = Some(own),
-                        Some(all) => all.merge(&own),
-                    }
-                    answer.take_in(model, ready, solved);
+        let (islands, recovery) = (&prepared.done(model)?.islands[..], Duration::ZERO);
+        Ok(Self { model, islands, answer, certificate: None, failure: None, recovery })
+    }
+
+    /// Takes in the end of the next island.
+    pub fn take_in(&mut self, end: Result<Solved>) {
+        let Self { model, answer, .. } = self;
+        let ready = &self.islands[answer.failed.len()];
+        answer.failed.push(end.is_err());
+        match end {
+            Ok(mut solved) => {
+                answer.cleaned.push(solved.cleaned.take());
+                self.recovery += solved.recovery;
+                let own = named(model, ready, solved.ending.judgement.certificate);
+                if solved.outcome == Outcome::Marginal && solved.ending.judgement.travelled {
+                    answer.report.travelled = own.equilibrium.place;
                 }
-                Err(_) => {
-                    answer.cleaned.push(None);
-                    answer.leave_out(model, ready);
+                match &mut self.certificate {
+                    None => self.certificate = Some(own),
+                    Some(all) => all.merge(&own),
                 }
+                answer.take_in(model, ready, solved);
+            }
+            Err(error) => {
+                answer.cleaned.push(None);
+                answer.leave_out(model, ready);
+                self.failure.get_or_insert(error);
             }
         }
+    }
+
+    /// The answer; none if no island has one.
+    pub fn answer(self) -> Option<Answer> {
+        let Self { model, mut answer, certificate, .. } = self;
+        let mut certificate = certificate?;
+        let counts = model.sizes();
         answer.report.body.take_if(|_| answer.failed.len() == 1);
-        let mut certificate = all.unwrap_or_default();
         certificate.energy += answer.take_in_rows_alone(model);
         (answer.report.certificate, answer.report.energy) = (certificate, certificate.energy);
         let gap = |i: usize| model.contact.open_gap(i, &answer.u, answer.lambda[i]);
@@ -96,9 +121,11 @@ impl Answer {
         answer.report.slipping = count(FrictionState::Slip);
         answer.slips = answer.slips_of(model);
         answer.report.active = answer.states.iter().filter(|state| **state == RowState::Closed).count();
-        Ok(Some(answer))
+        Some(answer)
     }
+}
 
+impl Answer {
     /// lambda, mu or lambda_t, force.
     pub fn forces(&self, kind: RowKind) -> &[f64] {
         match kind {

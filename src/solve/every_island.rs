@@ -1,21 +1,28 @@
 //! Solves every island separately, and in parallel if there are threads.
 
 use std::cmp::Reverse;
+use std::collections::BTreeMap;
 use std::sync::mpsc::channel;
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
-use crate::platform::memory::reserved;
 use crate::platform::threads::{self, TaskEvent, Tasks};
 use crate::progress::{LogLevel, Told, Voice, Watch};
 use crate::setup::Prepared;
+use crate::solve::answer::Ends;
 use crate::solve::case::Case;
-use crate::solve::island::{solve_island, Ends, Solved};
+use crate::solve::island::{solve_island, Solved};
 use crate::solve::start::Start;
 
 /// Solves every island, in parallel if there are threads; the number of threads does not change any bit of the answers.
-pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &mut Watch) -> Result<Ends> {
+pub fn solve_islands<'a>(
+    model: &'a Model,
+    prepared: &'a Prepared,
+    start: &Start,
+    watch: &mut Watch,
+) -> Result<Ends<'a>> {
+    let mut ends = Ends::new(model, prepared)?;
     let islands = &prepared.done(model)?.islands;
     let (stops, threads) = (watch.stops.clone(), model.threads());
     let (is_heard, count) = (watch.log.is_heard(LogLevel::Phase), islands.len());
@@ -34,9 +41,8 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
     if count == 1 || threads == 1 {
         let log = watch.log.clone();
         let say: Say = Arc::new(move |line| log.say(LogLevel::Phase, || line));
-        let mut ends = reserved(count, "answers of groups of bodies")?;
         for k in 0..count {
-            ends.push(of_itself(solve(k, &say, watch))?);
+            ends.take_in(of_itself(solve(k, &say, watch))?);
         }
         return Ok(ends);
     }
@@ -44,8 +50,9 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
     let on_caller = |k: usize| bodies(k).any(|body| body.k().is_some_and(|k| k.on_caller()));
     let mut order: Vec<usize> = (0..islands.len()).collect();
     order.sort_by_key(|&k| Reverse(islands[k].dual.product_work()));
-    let mut ends: Vec<Option<_>> = islands.iter().map(|_| None).collect();
-    let mut told = Ok(());
+    // answers are combined in the order of the islands
+    let (mut waiting, mut next) = (BTreeMap::new(), 0);
+    let (mut told, mut taken) = (Ok(()), Ok(()));
     let (sender, lines) = channel();
     let line: Say = Arc::new(move |line| {
         drop(sender.send(line));
@@ -56,7 +63,13 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
     threads::run_telling(tasks, solve, &mut |heard| {
         let mut heard_of = lines.try_iter().map(Message::Line).collect::<Vec<_>>();
         match heard {
-            TaskEvent::Done(k, end) => ends[k] = Some(end),
+            TaskEvent::Done(k, end) => {
+                waiting.insert(k, end);
+                while let Some(end) = waiting.remove(&next).filter(|_| taken.is_ok()) {
+                    taken = of_itself(end).map(|end| ends.take_in(end));
+                    next += 1;
+                }
+            }
             TaskEvent::Said(message) => heard_of.push(message),
             TaskEvent::Nothing => {}
         }
@@ -74,7 +87,7 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
             return Err(error);
         }
     }
-    ends.into_iter().flatten().map(of_itself).collect()
+    taken.map(|()| ends)
 }
 
 /// Receives lines on the progress of the loops of an island.

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::linalg::vector::norm_max;
 use crate::linalg::{Csr, Operator};
 use crate::model::{Accuracy, Model};
@@ -39,12 +39,8 @@ pub struct Solved {
     /// The second tries made.
     pub tries: Tries,
     /// Time for recovery and certification of answers, including the last.
-    pub judging: Duration,
-    pub recovering: Duration,
+    pub recovery: Duration,
 }
-
-/// How every island ended: with an answer, or with the named reason why it has none.
-pub type Ends = Vec<std::result::Result<Solved, Error>>;
 
 /// Limit of the answers after which resistance that is noise of the data is removed from G.
 const CLEANINGS: usize = 4;
@@ -214,7 +210,6 @@ fn attempt(
         outcome = Outcome::Marginal;
     }
     let unheld = dual.unheld.as_ref().map_or(0.0, |taken| taken.share);
-    let recovering = recovering.elapsed();
     Ok(Tried::Ended(Box::new(Solved {
         ending,
         outcome,
@@ -223,8 +218,7 @@ fn attempt(
         slide,
         cleaned: None,
         tries: Tries::default(),
-        judging,
-        recovering,
+        recovery: judging + recovering.elapsed(),
     })))
 }
 

@@ -37,7 +37,6 @@ pub use answer::{named, Answer};
 pub use case::Case;
 pub use every_island::solve_islands;
 pub use held::without_force;
-pub use island::Solved;
 pub use known::products_of_known_states;
 pub use report::{Outcome, Report, RowState};
 pub use slides::Slide;

@@ -3,7 +3,7 @@
 use std::ops::{Deref, DerefMut, Range};
 use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::decomposition::{Connected, Decomposition};
 use crate::error::{Error, Kind, Result};
@@ -13,7 +13,7 @@ use crate::platform::interrupt::Clock;
 use crate::platform::memory::Headroom;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::setup::{Prepared, Work};
-use crate::solve::{solve_islands, Answer, Report, Solved};
+use crate::solve::{solve_islands, Report};
 use crate::solver::decomposed::{answer_of_host, findings_of_host, of_host, same_bodies, solved};
 use crate::solver::findings::{redundant, Findings};
 use crate::solver::history::{Current, History};
@@ -99,12 +99,10 @@ impl Problem {
         noticed::repeated(&watch.log, host, || Ok(redundant(model, prepared.done(model)?)))?;
         let solving = Instant::now();
         let ends = solve_islands(model, prepared, &start, watch).map_err(told)?;
-        let sum = |time: fn(&Solved) -> Duration| ends.iter().flatten().map(time).sum::<Duration>();
-        let (judging, recovering) = (sum(|end| end.judging), sum(|end| end.recovering));
-        let failure = ends.iter().find_map(|end| end.as_ref().err().cloned()).map(told);
+        let failure = ends.failure.clone().map(told);
         watch.phases.add(Phase::DualSolve, solving.elapsed());
-        watch.phases.move_time(Phase::DualSolve, Phase::Recovery, judging + recovering);
-        if let Some(answer) = Answer::new(model, prepared, ends)? {
+        watch.phases.move_time(Phase::DualSolve, Phase::Recovery, ends.recovery);
+        if let Some(answer) = ends.answer() {
             let mut answer = answer_of_host(host, model, prepared, answer)?;
             answer.report.seconds_setup = (solving - started).as_secs_f64();
             answer.report.seconds_solve = solving.elapsed().as_secs_f64();
