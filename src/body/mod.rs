@@ -70,9 +70,9 @@ pub struct Body {
     /// Alternative: `K_p` as the sum of the matrices of pieces.
     pub assembled: Option<Arc<Assembled>>,
     /// `R_p` or vectors that may span it; if neither vectors nor coordinates are given, the library finds it.
-    pub null_space: Option<NullSpaceInput>,
+    pub null_space: Option<Box<NullSpaceInput>>,
     /// Positions of the dofs: candidates for the null space if none is given.
-    pub coordinates: Option<Coordinates>,
+    pub coordinates: Option<Box<Coordinates>>,
     /// The meaning of the rigid motions of the coordinates.
     pub coordinate_modes: Modes,
     /// Dofs held in `K_p+`; chosen by the library if not given.

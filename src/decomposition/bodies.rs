@@ -99,7 +99,7 @@ impl Split<'_> {
         let mut made = reserved(blocks.len(), WHAT)?;
         for Component { dofs, stiffness } in blocks {
             let null_space = self.given.body.null_space.as_ref();
-            let null_space = null_space.map(|given| given.on(&dofs, &stiffness)).transpose()?;
+            let null_space = null_space.map(|given| given.on(&dofs, &stiffness).map(Box::new)).transpose()?;
             let own = Body { null_space, ..self.part_of(&dofs, Arc::new(stiffness))? };
             made.push((own, Part { body: self.body, piece: 0, dofs: Some(dofs), shares: Vec::new() }));
         }
@@ -113,7 +113,7 @@ impl Split<'_> {
         Ok(Body {
             order: dofs.len(),
             stiffness: Some(stiffness),
-            coordinates: coordinates.as_ref().map(|all| all.of(dofs)).transpose()?,
+            coordinates: coordinates.as_ref().map(|all| all.of(dofs).map(Box::new)).transpose()?,
             coordinate_modes: *coordinate_modes,
             fixing: fixing.as_ref().map(|fixing| fixing.iter().filter_map(own).collect()),
             ..Body::default()

@@ -29,7 +29,7 @@ pub fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
             own.into_iter().for_each(|(i, mode, entry)| rows[i].push((mode, entry)));
         }
     }
-    let mut coarse = Csr::empty(modes);
+    let mut coarse = Csr::with_room(modes, m, rows.iter().map(Vec::len).sum());
     rows.into_iter().for_each(|row| coarse.push_row(row));
     coarse
 }

@@ -74,8 +74,6 @@ pub struct Dual {
     pub springs: usize,
     /// Modes with negative stiffness, with this stiffness < 0 in the scaling of G and alpha.
     pub negative: Vec<(usize, f64)>,
-    /// Counts of computed and reused columns of all `F_p`.
-    pub columns: ColumnCounts,
 }
 
 /// A body and the range of its unknowns.
@@ -135,10 +133,14 @@ impl Draft {
         reuse.as_ref().map(|reuse| reuse.operator(&self.subdomains[p].kplus, rows)).transpose()
     }
 
+    /// Counts of computed and reused columns of all `F_p`.
+    pub fn columns(&self) -> ColumnCounts {
+        self.distinct.iter().filter_map(|(_, reuse)| reuse.as_ref()).map(Reuse::columns).sum()
+    }
+
     /// The dual problem with the assembled operators; `compliance`: the diagonal of C, m entries. `balanced`: scales R_p
     /// so that `|G_p|` is in [1, 2) for every body that rows touch; otherwise R_p is not scaled.
     pub fn finish(self, operators: Vec<Option<Packed>>, mut compliance: Vec<f64>, balanced: bool) -> Dual {
-        let columns = self.distinct.iter().filter_map(|(_, reuse)| reuse.as_ref()).map(Reuse::columns).sum();
         let mut subdomains = self.subdomains;
         subdomains.iter_mut().zip(operators).for_each(|(s, operator)| s.operator = operator);
         let modes = subdomains.last().map_or(0, |s| s.modes.end);
@@ -150,7 +152,7 @@ impl Draft {
         }
         let negative = negative_modes(&subdomains);
         let blocks = subdomains.iter().map(|own| own.modes.start).collect();
-        Dual { subdomains, compliance, coarse, blocks, springs, negative, columns }
+        Dual { subdomains, compliance, coarse, blocks, springs, negative }
     }
 }
 
@@ -163,7 +165,11 @@ impl Dual {
 
     /// Numbers of distinct rows of B over each of these ranges of all unknowns, ascending; rows that are multiples of each other
     /// count once. Row `tangential` is the first tangential row.
-    pub fn distinct_rows(ranges: Vec<Range<usize>>, matrix: &Arc<Csr>, tangential: usize) -> Vec<DistinctRows> {
+    pub fn distinct_rows(
+        ranges: Vec<Range<usize>>,
+        matrix: &Arc<Csr>,
+        tangential: usize,
+    ) -> Vec<DistinctRows> {
         let count = |(rows, local): &(Vec<usize>, Arc<Csr>)| {
             let multiples = Multiples::of(local).0;
             let others = rows.partition_point(|row| *row < tangential);

@@ -184,7 +184,7 @@ mod tests {
         rows.push_row([(12, 2.0)]);
         rows.push_row([(5, 1.0), (6, -1.0), (15, 1.0)]);
         let compliance = vec![0.0, 0.1, 0.0, 0.2];
-        let draft = Draft::new(vec![part(0), part(1)], &rows);
+        let draft = Draft::new(vec![part(0), part(1)], &Arc::new(rows));
         let operators = (0..2).map(|p| draft.assemble(p).unwrap()).collect();
         draft.finish(operators, compliance, true)
     }

@@ -70,7 +70,8 @@ impl Model {
         let given = NullSpaceInput { vectors, modes };
         let old = self.given(body)?.body.null_space.as_ref();
         let unchanged = old.is_some_and(|old| same_vectors(old, &given));
-        self.change(body, Change::unless(unchanged, Change::Motions))?.body.null_space = Some(given);
+        self.change(body, Change::unless(unchanged, Change::Motions))?.body.null_space =
+            Some(Box::new(given));
         Ok(())
     }
 
@@ -109,7 +110,8 @@ impl Model {
         let coordinates = Coordinates::new(dim, dir, xyz, ld).map_err(|e| e.body(body))?;
         let old = self.given(body)?.body.coordinates.as_ref();
         let unchanged = old.is_some_and(|old| old.same(&coordinates));
-        self.change(body, Change::unless(unchanged, Change::Motions))?.body.coordinates = Some(coordinates);
+        self.change(body, Change::unless(unchanged, Change::Motions))?.body.coordinates =
+            Some(Box::new(coordinates));
         Ok(())
     }
 

@@ -70,7 +70,7 @@ pub struct GivenBody {
     /// Its elements, if given by elements.
     pub mesh: Option<Box<Mesh>>,
     /// How the host gave its matrix.
-    pub form: Option<Form>,
+    pub form: Option<Box<Form>>,
     /// The host has overwritten borrowed values, and they were refused: there is no valid matrix.
     pub spoiled: bool,
     /// The host's numbers of its unknowns.

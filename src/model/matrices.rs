@@ -75,7 +75,7 @@ impl Model {
         given.body.stiffness = Some(Arc::new(stiffness));
         given.body.operator = None;
         (given.body.assembled, given.mesh) = (None, None);
-        given.form = Some(form);
+        given.form = Some(Box::new(form));
         given.spoiled = false;
         Ok(())
     }
@@ -164,7 +164,7 @@ impl Model {
     }
 
     fn form(&self, body: usize) -> Result<&Form> {
-        self.given(body)?.form.as_ref().ok_or_else(|| not_given(body))
+        self.given(body)?.form.as_deref().ok_or_else(|| not_given(body))
     }
 
     fn places(&self, body: usize, split: bool) -> Result<&Places> {

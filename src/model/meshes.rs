@@ -34,7 +34,8 @@ impl Model {
         let given = self.change(body, Change::Pattern)?;
         given.without_matrix();
         given.body.operator = None;
-        given.form = Some(Form::Elements(ptr.windows(2).map(|pair| (pair[1] - pair[0]).pow(2)).sum()));
+        let entries = ptr.windows(2).map(|pair| (pair[1] - pair[0]).pow(2)).sum();
+        given.form = Some(Box::new(Form::Elements(entries)));
         given.spoiled = false;
         given.mesh = Some(Box::new(Mesh::new(connectivity)));
         Ok(())

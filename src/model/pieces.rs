@@ -38,7 +38,7 @@ impl Model {
         let mesh = Mesh::of_pieces(connectivity, pieces)?;
         let slot = self.change(body, Change::Pattern)?;
         slot.body.operator = None;
-        slot.form = Some(Form::Elements(given.val.len()));
+        slot.form = Some(Box::new(Form::Elements(given.val.len())));
         slot.spoiled = false;
         slot.mesh = Some(Box::new(mesh));
         let room = slot.room_for_matrix()?;

@@ -139,10 +139,10 @@ impl Prepared {
         watch.every_body(&part, assemble, |p, operator| made[island_of[p]][number_in[p]] = operator)?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
         for (((island, rows), draft), made) in islands.into_iter().zip(drafts).zip(made) {
+            self.work.columns_computed += draft.columns().computed;
+            self.work.columns_kept += draft.columns().kept;
             // Algorithm 3 uses the rigid modes without scaling, as in the paper
             let dual = draft.finish(made, rows.compliance.clone(), !rows.coupled);
-            self.work.columns_computed += dual.columns.computed;
-            self.work.columns_kept += dual.columns.kept;
             let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
             let of_part = |part: usize| inverse(part).map(|of| (&of.kplus, &of.grounded));
             let whole = Whole::of(model, &island, &of_part)?;

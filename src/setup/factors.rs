@@ -286,7 +286,8 @@ impl Prepared {
         let operators = Operators::new(settings, sizes, there.saturating_add(more));
         let more = more.saturating_add(operators.bytes);
         let inverses = self.bodies.iter().filter_map(|own| own.inverse.as_ref());
-        let kept: usize = inverses.filter_map(|inverse| inverse.operator.as_ref()).map(|kept| kept.bytes()).sum();
+        let kept: usize =
+            inverses.filter_map(|inverse| inverse.operator.as_ref()).map(|kept| kept.bytes()).sum();
         if kept > 0 && check_memory(settings, there, more.saturating_add(kept)).is_err() {
             self.bodies.iter_mut().filter_map(|own| own.inverse.as_mut()).for_each(|of| of.operator = None);
         }

@@ -11,7 +11,7 @@ use crate::linalg::graph::joined;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
 use crate::model::{Lengths, Model};
-use crate::platform::memory::{copied, headroom, reserved, zeros};
+use crate::platform::memory::{copied, filled, headroom, reserved, zeros};
 
 const WHAT: &str = "groups of bodies";
 
@@ -152,12 +152,11 @@ impl Island {
         let model = lengths.model();
         let mut friction = Some(&mut self.friction).filter(|of| !of.numbers.is_empty()).map(Arc::make_mut);
         let tangential = friction.as_mut().map(|of| (&mut of.tangential, RowKind::Tangential));
-        let others =
-            [(&mut self.contact, RowKind::Inequality), (&mut self.equalities, RowKind::Equality)];
+        let others = [(&mut self.contact, RowKind::Inequality), (&mut self.equalities, RowKind::Equality)];
         for (members, kind) in others.into_iter().chain(tangential) {
             let rows = model.rows(kind);
             let Members { numbers, rows: own } = members;
-            own.rounding.resize(numbers.len(), 0.0);
+            own.rounding = vec![0.0; numbers.len()];
             let of_own = own.rhs.iter_mut().zip(&mut own.rounding);
             for ((c, taken), &i) in of_own.zip(&*numbers) {
                 *c = lengths.rhs(kind, i);
@@ -218,22 +217,22 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         count = all;
     }
     let mut islands = vec![Island::empty(); count];
-    let mut start = reserved(bodies, WHAT)?;
-    for (p, &island) in of_body.iter().enumerate() {
-        let island = &mut islands[island];
-        start.push(island.unknowns());
-        let range = island.unknowns()..island.unknowns() + model.bodies[p].body.order;
-        island.bodies.push(p);
-        island.ranges.push(range);
+    let mut start = filled(bodies, 0, WHAT)?;
+    for (island, bodies) in islands.iter_mut().zip(members(count, of_body.iter().copied().zip(0..))) {
+        let mut end = 0;
+        let range = |&p: &usize| {
+            start[p] = end;
+            end += model.bodies[p].body.order;
+            start[p]..end
+        };
+        island.ranges = bodies.iter().map(range).collect();
+        island.bodies = bodies;
     }
     let place = |j: usize| start[body_of(j)] + j - offsets[body_of(j)];
     for (kind, rows) in all.into_iter().enumerate() {
-        let mut numbers: Vec<Vec<usize>> = vec![Vec::new(); count];
-        for i in (0..rows.len()).filter(|&i| rows.is_finite(i)) {
-            if let Some((j, _)) = rows.matrix.row(i).next() {
-                numbers[of_body[body_of(j)]].push(i);
-            }
-        }
+        let finite = (0..rows.len()).filter(|&i| rows.is_finite(i));
+        let island_of = |i: usize| rows.matrix.row(i).next().map(|(j, _)| (of_body[body_of(j)], i));
+        let numbers = members(count, finite.filter_map(island_of));
         for (island, numbers) in islands.iter_mut().zip(numbers).filter(|(_, own)| !own.is_empty()) {
             let rows = restricted(rows, &numbers, island.unknowns(), place)?;
             *[&mut island.contact, &mut island.equalities][kind] = Members { numbers, rows };
@@ -245,6 +244,15 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         island.unit = power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max));
     }
     Ok(islands)
+}
+
+/// For each of `count` islands its members, given as (island, member), in lists without room for more.
+fn members(count: usize, all: impl Iterator<Item = (usize, usize)> + Clone) -> Vec<Vec<usize>> {
+    let mut sizes = vec![0; count];
+    all.clone().for_each(|(island, _)| sizes[island] += 1);
+    let mut members: Vec<_> = sizes.into_iter().map(Vec::with_capacity).collect();
+    all.for_each(|(island, member)| members[island].push(member));
+    members
 }
 
 /// Nodes with friction that may carry a tangential force and have a tangential row that counts.
@@ -303,7 +311,8 @@ fn restricted(
     let matrix = if numbers.len() == rows.len() && rows.matrix.cols == unknowns {
         Arc::clone(&rows.matrix)
     } else {
-        let mut own = Csr::empty(unknowns);
+        let entries = numbers.iter().map(|&i| rows.matrix.row(i).count()).sum();
+        let mut own = Csr::with_room(unknowns, numbers.len(), entries);
         numbers.iter().for_each(|&i| own.push_row(rows.matrix.row(i).map(|(j, v)| (place(j), v))));
         Arc::new(own)
     };

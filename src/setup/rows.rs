@@ -87,7 +87,8 @@ impl DualRows {
         let contact = island.contact.numbers.len();
         let tangential = contact + island.equalities.numbers.len();
         let grouping = Grouping::of(&all, (contact, tangential), &metric, |i| compliances[i] > 0.0);
-        let mut scaled = Csr::empty(metric.len());
+        let entries = grouping.leaders.iter().map(|&leader| all.row(leader).count()).sum();
+        let mut scaled = Csr::with_room(metric.len(), grouping.leaders.len(), entries);
         grouping.leaders.iter().for_each(|&leader| scaled.push_row(all.row(leader)));
         let compliance: Vec<f64> = grouping.leaders.iter().map(|&leader| compliances[leader]).collect();
         let first = grouping.led_before(tangential);

@@ -18,6 +18,13 @@ impl Csr {
         Self { cols, ptr: vec![0], col: Vec::new(), val: Vec::new() }
     }
 
+    /// A matrix without rows, with room for these numbers of rows and entries.
+    pub fn with_room(cols: usize, rows: usize, entries: usize) -> Self {
+        let mut ptr = Vec::with_capacity(rows + 1);
+        ptr.push(0);
+        Self { cols, ptr, col: Vec::with_capacity(entries), val: Vec::with_capacity(entries) }
+    }
+
     pub fn rows(&self) -> usize {
         self.ptr.len() - 1
     }
