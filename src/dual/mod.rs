@@ -65,7 +65,7 @@ struct Subdomain {
 pub struct Dual {
     subdomains: Vec<Subdomain>,
     /// C, one entry per row of B, no unit.
-    compliance: Vec<f64>,
+    pub compliance: Vec<f64>,
     /// `G'` = B R, m x r.
     pub coarse: Csr,
     /// First mode of each body.
@@ -95,7 +95,7 @@ pub struct Draft {
     /// Without operators.
     subdomains: Vec<Subdomain>,
     /// The rows B of each body, and the operator of previous rows for reuse; none if the operator is matrix-free.
-    distinct: Vec<(Csr, Option<Reuse>)>,
+    distinct: Vec<(Arc<Csr>, Option<Reuse>)>,
 }
 
 impl Draft {

@@ -2,6 +2,8 @@
 //! copies are multiples of one unit vector in this body. F_p = T (B K_p+ B') T' is assembled and applied with the rows of
 //! B alone.
 
+use std::sync::Arc;
+
 use crate::linalg::Csr;
 
 pub struct Multiples {
@@ -18,9 +20,9 @@ struct RowMultiple {
 }
 
 impl Multiples {
-    /// T of B_p; and B, one row per direction, in the order of first appearance. Rows count as multiples if their
+    /// T of B_p; and B, one row per direction, in the order of first appearance; B_p itself if T = I. Rows count as multiples if their
     /// entries, divided by the largest, are equal bit by bit.
-    pub fn of(matrix: &Csr) -> (Self, Csr) {
+    pub fn of(matrix: &Arc<Csr>) -> (Self, Arc<Csr>) {
         let scale: Vec<f64> = (0..matrix.rows()).map(|i| largest(matrix, i)).collect();
         let key = |i: usize| {
             let scale = scale[i];
@@ -42,7 +44,9 @@ impl Multiples {
                 multiples.push(RowMultiple { of: multiples[first].of, factor: scale[i] / scale[first] });
             }
         }
-        (Self { count: distinct.rows(), multiples }, distinct)
+        let count = distinct.rows();
+        let distinct = if count == matrix.rows() { Arc::clone(matrix) } else { Arc::new(distinct) };
+        (Self { count, multiples }, distinct)
     }
 
     /// Rows of B that the first rows of B_p, so many, are multiples of.
@@ -93,7 +97,7 @@ mod tests {
         rows.push_row([(0, 1.0), (1, -1.0)]);
         rows.push_row([(0, 0.25), (1, 0.25)]);
         rows.push_row([(2, 0.0)]);
-        let (multiples, distinct) = Multiples::of(&rows);
+        let (multiples, distinct) = Multiples::of(&Arc::new(rows.clone()));
         let expected = [(0, 1.0), (1, 1.0), (0, -0.5), (2, 1.0), (1, 0.25), (3, 1.0)];
         let expected = expected.map(|(of, factor)| RowMultiple { of, factor });
         assert_eq!(multiples.multiples, expected);
@@ -110,7 +114,7 @@ mod tests {
     fn the_operator_of_all_rows_is_that_of_the_distinct_ones_between_its_factors() {
         let mut rows = Csr::empty(2);
         [(0, 1.0), (1, 3.0), (0, -2.0)].into_iter().for_each(|entry| rows.push_row([entry]));
-        let (multiples, _) = Multiples::of(&rows);
+        let (multiples, _) = Multiples::of(&Arc::new(rows));
         // A = [[5, 7], [7, 11]] between rows 0 and 1; the rows of the body are rows 4, 2, 0 of x
         let a = |i: usize, j: usize| [[5.0, 7.0], [7.0, 11.0]][i][j];
         let full = [[5.0, 7.0, -10.0], [7.0, 11.0, -14.0], [-10.0, -14.0, 20.0]];

@@ -2,7 +2,7 @@
 //! the entries F_p(i, j) of two rows that body p already had.
 
 use std::iter::Sum;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use crate::body::{GeneralizedInverse, HostMultiple};
 use crate::error::{Error, Kind, Result};
@@ -11,7 +11,7 @@ use crate::linalg::{Csr, Operator, Packed};
 
 /// `F_p` and the rows of B over body p for which it was made.
 pub struct Kept {
-    rows: Csr,
+    rows: Arc<Csr>,
     operator: Packed,
 }
 
@@ -34,7 +34,7 @@ pub(super) enum Reuse {
 }
 
 impl Kept {
-    pub(super) fn new(rows: Csr, operator: Packed) -> Self {
+    pub(super) fn new(rows: Arc<Csr>, operator: Packed) -> Self {
         Self { rows, operator }
     }
 

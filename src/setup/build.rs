@@ -58,12 +58,12 @@ impl Prepared {
                     pilots[p] = Some(Box::new(Pilots { metric, carried }));
                 }
             }
-            let mut own = DualRows::of(island, values, coupled(&model.settings))?;
+            let (mut own, compliance) = DualRows::of(island, values, coupled(&model.settings))?;
             own.uneven |= !carried.is_empty();
             own.level_gaps(island, &lengths);
             let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix, own.first_tangential());
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
-            rows.push(own);
+            rows.push((Box::new(own), compliance));
         }
         self.carry(pilots);
         watch.phases.ended(Phase::Rows, begun);
@@ -108,13 +108,13 @@ impl Prepared {
     fn dualize(
         &mut self,
         model: &Model,
-        islands: Vec<(Island, DualRows)>,
+        islands: Vec<(Box<Island>, (Box<DualRows>, Vec<f64>))>,
         operators: Operators,
         watch: &mut Watch,
     ) -> Result<Duals> {
         let mut drafts = reserved(islands.len(), "groups of bodies")?;
         let (mut island_of, mut number_in) = (vec![0; model.bodies.len()], vec![0; model.bodies.len()]);
-        for (k, (island, rows)) in islands.iter().enumerate() {
+        for (k, (island, (rows, _))) in islands.iter().enumerate() {
             let mut parts = reserved(island.bodies.len(), "groups of bodies")?;
             for (number, (&p, range)) in island.bodies.iter().zip(&island.ranges).enumerate() {
                 (island_of[p], number_in[p]) = (k, number);
@@ -138,11 +138,11 @@ impl Prepared {
         let assemble = |p: usize| drafts[island_of[p]].assemble(number_in[p]).map_err(|e| e.body(p));
         watch.every_body(&part, assemble, |p, operator| made[island_of[p]][number_in[p]] = operator)?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
-        for (((island, rows), draft), made) in islands.into_iter().zip(drafts).zip(made) {
+        for (((island, (rows, compliance)), draft), made) in islands.into_iter().zip(drafts).zip(made) {
             self.work.columns_computed += draft.columns().computed;
             self.work.columns_kept += draft.columns().kept;
             // Algorithm 3 uses the rigid modes without scaling, as in the paper
-            let dual = draft.finish(made, rows.compliance.clone(), !rows.coupled);
+            let dual = draft.finish(made, compliance, !rows.coupled);
             let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
             let of_part = |part: usize| inverse(part).map(|of| (&of.kplus, &of.grounded));
             let whole = Whole::of(model, &island, &of_part)?;

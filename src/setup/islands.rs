@@ -23,7 +23,8 @@ pub struct Island {
     /// Unknowns of each body among those of the island.
     pub ranges: Vec<Range<usize>>,
     pub contact: Members,
-    pub equalities: Members,
+    /// Shared by the islands without equality rows.
+    pub equalities: Arc<Members>,
     /// Shared by the islands without friction.
     pub friction: Arc<Nodes>,
     /// 2^p, p = floor(log2 max K_ii), force / length: forces are divided by it.
@@ -152,16 +153,20 @@ impl Island {
         let model = lengths.model();
         let mut friction = Some(&mut self.friction).filter(|of| !of.numbers.is_empty()).map(Arc::make_mut);
         let tangential = friction.as_mut().map(|of| (&mut of.tangential, RowKind::Tangential));
-        let others = [(&mut self.contact, RowKind::Inequality), (&mut self.equalities, RowKind::Equality)];
-        for (members, kind) in others.into_iter().chain(tangential) {
+        let equalities = Some(&mut self.equalities).filter(|of| !of.numbers.is_empty());
+        let equalities = equalities.map(|of| (Arc::make_mut(of), RowKind::Equality));
+        let contact = (&mut self.contact, RowKind::Inequality);
+        for (members, kind) in [contact].into_iter().chain(equalities).chain(tangential) {
             let rows = model.rows(kind);
             let Members { numbers, rows: own } = members;
-            own.rounding = vec![0.0; numbers.len()];
-            let of_own = own.rhs.iter_mut().zip(&mut own.rounding);
+            let mut rounding = vec![0.0; numbers.len()];
+            let of_own = own.rhs.iter_mut().zip(&mut rounding);
             for ((c, taken), &i) in of_own.zip(&*numbers) {
                 *c = lengths.rhs(kind, i);
                 *taken = if *c == rows.rhs[i] { 0.0 } else { rows.rhs[i].abs() };
             }
+            let is_taken = rounding.iter().any(|taken| *taken != 0.0);
+            own.rounding = Some(rounding).filter(|_| is_taken).unwrap_or_default();
         }
         let nodes = friction.into_iter().flat_map(|of| of.nodes.iter_mut().zip(&of.numbers));
         for (own, &number) in nodes {
@@ -191,7 +196,7 @@ impl Members {
 
 /// The islands of a problem, by their first bodies. Rows without entries and rows that never close, `c = +infinity`, are
 /// in none of them.
-pub fn islands(model: &Model) -> Result<Vec<Island>> {
+pub fn islands(model: &Model) -> Result<Vec<Box<Island>>> {
     let (bodies, offsets) = (model.bodies.len(), &model.offsets);
     let body_of = |j: usize| offsets[1..].partition_point(|end| *end <= j);
     let all = [&model.contact, &model.equalities];
@@ -216,7 +221,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         of_body.iter_mut().for_each(|island| *island = joint[*island]);
         count = all;
     }
-    let mut islands = vec![Island::empty(); count];
+    let mut islands = vec![Box::new(Island::empty()); count];
     let mut start = filled(bodies, 0, WHAT)?;
     for (island, bodies) in islands.iter_mut().zip(members(count, of_body.iter().copied().zip(0..))) {
         let mut end = 0;
@@ -235,7 +240,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         let numbers = members(count, finite.filter_map(island_of));
         for (island, numbers) in islands.iter_mut().zip(numbers).filter(|(_, own)| !own.is_empty()) {
             let rows = restricted(rows, &numbers, island.unknowns(), place)?;
-            *[&mut island.contact, &mut island.equalities][kind] = Members { numbers, rows };
+            *[&mut island.contact, Arc::make_mut(&mut island.equalities)][kind] = Members { numbers, rows };
         }
     }
     nodes(model, &acting, &mut islands, |j| of_body[body_of(j)], place)?;
@@ -274,7 +279,7 @@ fn unknowns_of(model: &Model, node: usize) -> impl Iterator<Item = usize> + '_ {
 fn nodes(
     model: &Model,
     acting: &[usize],
-    islands: &mut [Island],
+    islands: &mut [Box<Island>],
     island_of: impl Fn(usize) -> usize,
     place: impl Fn(usize) -> usize + Copy,
 ) -> Result<()> {

@@ -83,7 +83,7 @@ fn preconditioner(
     stiffness: BoundaryStiffness,
     stops: &Stops,
 ) -> Result<Preconditioner> {
-    let Island { bodies, ranges, unit, .. } = &ready.island;
+    let Island { bodies, ranges, unit, .. } = &*ready.island;
     let constrained = constrained(&ready.rows.matrix, ranges);
     let boundaries = threads::run(model.threads(), ranges.len(), |k| {
         let (p, local) = (bodies[k], &constrained[k]);
@@ -98,5 +98,6 @@ fn preconditioner(
         let stiffness = made.map_err(|e| e.body(p))?;
         Ok(Boundary { dofs: local.iter().map(|j| j + ranges[k].start).collect(), stiffness })
     })?;
-    Preconditioner::new(&ready.rows.matrix, ready.rows.compliance.clone(), &ready.rows.metric, boundaries)
+    let (rows, compliance) = (&ready.rows.matrix, &ready.dual.compliance);
+    Preconditioner::new(rows, compliance[..rows.rows()].to_vec(), &ready.rows.metric, boundaries)
 }

@@ -16,9 +16,9 @@ const PARALLEL_PAYS: usize = 1 << 18;
 
 /// The dual problem of an island. There may be very many, of one small body each: what few of them have is apart.
 pub struct Ready {
-    pub island: Island,
+    pub island: Box<Island>,
     pub dual: Dual,
-    pub rows: DualRows,
+    pub rows: Box<DualRows>,
     /// The island in terms of the host's bodies, if its own bodies are pieces of them.
     pub whole: Option<Box<Whole>>,
     /// The preconditioner and its option.

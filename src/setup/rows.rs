@@ -16,8 +16,6 @@ pub struct DualRows {
     pub scaled: Arc<Csr>,
     /// B' of `scaled = L B'`, from which F and G are formed.
     pub matrix: Arc<Csr>,
-    /// Diagonal of C' with `2^p S C S = L C'L'`: 1/k without unit, 0 for rigid rows.
-    pub compliance: Vec<f64>,
     /// `D / 2^p` over the unknowns of the island.
     pub metric: Vec<f64>,
     pub scaling: Scaling,
@@ -62,8 +60,9 @@ fn one_scale(scales: &mut [f64], normal: Option<f64>) {
 }
 
 impl DualRows {
-    /// The rows of an island; `metric`: D / 2^p over its unknowns. `coupled` rows are those of the host, only scaled.
-    pub fn of(island: &Island, metric: Vec<f64>, coupled: bool) -> Result<Self> {
+    /// The rows of an island, and the diagonal of C' with `2^p S C S = L C'L'`: 1/k without unit, 0 for rigid rows; `metric`:
+    /// D / 2^p over its unknowns. `coupled` rows are those of the host, only scaled.
+    pub fn of(island: &Island, metric: Vec<f64>, coupled: bool) -> Result<(Self, Vec<f64>)> {
         let mut all = Csr::empty(metric.len());
         let (mut scale, mut compliances) = (Vec::new(), Vec::new());
         for kind in RowKind::ALL {
@@ -104,7 +103,8 @@ impl DualRows {
         let scaled = Arc::new(scaled);
         let matrix = matrix.map_or_else(|| Arc::clone(&scaled), Arc::new);
         let scaling = Scaling { unit: island.unit, scale, grouping, decoupling };
-        Ok(Self { scaled, matrix, compliance, metric, scaling, coupled, contact, tangential, uneven })
+        let rows = Self { scaled, matrix, metric, scaling, coupled, contact, tangential, uneven };
+        Ok((rows, compliance))
     }
 
     /// Parallel contact rows whose gaps agree to the accuracy of the data have the tightest of these gaps: what is taken from the
@@ -125,6 +125,7 @@ impl DualRows {
             let slack = || lengths.rounding(RowKind::Inequality, numbers[i]).max(NOISE * given.abs());
             if scale[i] * given != tightest[group] && given - level <= slack() {
                 rows.rhs[i] = level;
+                rows.rounding.resize(rows.rhs.len(), 0.0);
                 rows.rounding[i] += (given - level).abs();
             }
         }

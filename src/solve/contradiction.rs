@@ -24,10 +24,10 @@ const WORK: usize = 200_000_000;
 /// to largest entry 1, far rows left out). B has unit rows without the compliant rows, which contradict no other row. The
 /// search needs no product with F.
 pub fn contradiction(case: Case, gaps: &Gaps) -> Result<Option<Error>> {
-    let rows = &case.ready.rows;
+    let (rows, compliance) = (&case.ready.rows, &case.ready.dual.compliance);
     let demand =
         |group: usize| if gaps.bounded[group] { -gaps.value[group] } else { gaps.value[group].abs() };
-    let rigid = |group: &usize| rows.compliance[*group] == 0.0 && rows.kind(*group) != RowKind::Tangential;
+    let rigid = |group: &usize| compliance[*group] == 0.0 && rows.kind(*group) != RowKind::Tangential;
     let size = (0..gaps.value.len()).filter(rigid).map(demand).fold(0.0, f64::max);
     let near = |group: &usize| gaps.value[*group] <= BEYOND * size;
     let rigid: Vec<usize> = (0..gaps.value.len()).filter(rigid).filter(near).collect();

@@ -105,7 +105,7 @@ impl<'a> Recovery<'a> {
         lambda: &[f64],
         mut free: Matrix,
     ) -> Result<Option<Rest>> {
-        let (dual, Island { ranges, .. }) = (&self.ready.dual, &self.ready.island);
+        let (dual, Island { ranges, .. }) = (&self.ready.dual, &*self.ready.island);
         for j in 0..free.cols {
             let own = dual.amplitudes(free.col(j));
             free.col_mut(j).copy_from_slice(&own);

@@ -86,7 +86,7 @@ impl Sliding {
         let (mut energy, terms) = self.energy(recovery)?;
         let mut moved = 0.0;
         for i in (0..rows.groups()).filter(|&i| !held[i]) {
-            let (given, compliance) = (rows.matrix.row_dot(i, &self.v), rows.compliance[i]);
+            let (given, compliance) = (rows.matrix.row_dot(i, &self.v), recovery.ready.dual.compliance[i]);
             let left = (given - compliance * self.x[i]).abs();
             if left > CLOSED * self.size(&rows.matrix, i) {
                 return Ok(false);

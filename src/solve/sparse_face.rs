@@ -110,7 +110,7 @@ impl<'a> SparseFaces<'a> {
             rows.row(i).map(|(_, b)| b * b).fold(0.0, f64::max) / (STIFFER * stiffest)
         });
         let analysis = Arc::new(Analysis::new(&k, &vec![false; metric.len()])?);
-        let (least, compliance) = (least.collect(), &own.compliance[..]);
+        let (least, compliance) = (least.collect(), &recovery.ready.dual.compliance[..rows.rows()]);
         Ok(Some(Self { rows, compliance, metric, least, gram, k, analysis }))
     }
 

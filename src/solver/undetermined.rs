@@ -91,7 +91,7 @@ impl Problem {
                     ready.rows.scaled.row(group).map(|(j, v)| (j, v / ready.rows.metric[j].sqrt())),
                 );
             }
-            let compliance: Vec<f64> = groups.iter().map(|&group| ready.rows.compliance[group]).collect();
+            let compliance: Vec<f64> = groups.iter().map(|&group| ready.dual.compliance[group]).collect();
             let found = dependent_rows(&rows.transposed()?, &compliance)?.into_iter();
             let leader = |at: usize| ready.rows.scaling.grouping.leaders[groups[at]] - ready.rows.contact;
             dependent.extend(found.map(|at| ready.island.equalities.numbers[leader(at)]));

@@ -97,6 +97,7 @@ impl Whole {
             nodes: nodes.clone(),
             tangential: of_host(RowKind::Tangential)?,
         });
+        let equalities = Arc::new(equalities);
         let island = Island { bodies, ranges, contact, equalities, friction, unit };
         let bodies = threads::run(model.threads(), island.bodies.len(), |k| {
             let (body, part) = (island.bodies[k], part_of[k]);

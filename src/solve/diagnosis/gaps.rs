@@ -49,9 +49,9 @@ impl<'a> Contradictions<'a> {
     /// The error that names contradictory rows, if a combination w of the groups of the dual, or a search among its rows,
     /// proves the contradiction. Compliant rows contradict nothing.
     pub fn proved(&self, w: &[f64]) -> Result<Option<Error>> {
-        let rows = &self.case.ready.rows;
+        let compliance = &self.case.ready.dual.compliance;
         let negligible = NEGLIGIBLE * norm_max(w);
-        let counts = |group: &usize| rows.compliance[*group] == 0.0 && w[*group].abs() > negligible;
+        let counts = |group: &usize| compliance[*group] == 0.0 && w[*group].abs() > negligible;
         let groups: Vec<usize> = (0..w.len()).filter(counts).collect();
         let weights = groups.iter().map(|&group| (self.gaps.holder[group], w[group])).collect();
         match self.proof(weights)? {
