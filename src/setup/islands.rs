@@ -234,13 +234,19 @@ pub fn islands(model: &Model) -> Result<Vec<Box<Island>>> {
         island.bodies = bodies;
     }
     let place = |j: usize| start[body_of(j)] + j - offsets[body_of(j)];
-    for (kind, rows) in all.into_iter().enumerate() {
+    for kind in [RowKind::Inequality, RowKind::Equality] {
+        let rows = model.rows(kind);
         let finite = (0..rows.len()).filter(|&i| rows.is_finite(i));
         let island_of = |i: usize| rows.matrix.row(i).next().map(|(j, _)| (of_body[body_of(j)], i));
         let numbers = members(count, finite.filter_map(island_of));
         for (island, numbers) in islands.iter_mut().zip(numbers).filter(|(_, own)| !own.is_empty()) {
             let rows = restricted(rows, &numbers, island.unknowns(), place)?;
-            *[&mut island.contact, Arc::make_mut(&mut island.equalities)][kind] = Members { numbers, rows };
+            let own = Members { numbers, rows };
+            if kind == RowKind::Inequality {
+                island.contact = own;
+            } else {
+                island.equalities = Arc::new(own);
+            }
         }
     }
     nodes(model, &acting, &mut islands, |j| of_body[body_of(j)], place)?;
