@@ -30,8 +30,7 @@ impl BetweenSolves {
         locked(&self.directions).take().map(|kept| *kept)
     }
 
-    pub fn keep_directions(&self, mut directions: Conjugate) {
-        directions.shrink();
+    pub fn keep_directions(&self, directions: Conjugate) {
         *locked(&self.directions) = Some(Box::new(directions));
     }
 }

@@ -56,6 +56,8 @@ impl Conjugate {
             if self.pairs.len() == MOST {
                 self.pairs.remove(0);
             }
+            // small problems, of which there may be very many, keep one
+            self.pairs.reserve_exact(1);
             self.pairs.push((p, image));
         }
     }
@@ -87,11 +89,6 @@ impl Conjugate {
 
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
-    }
-
-    /// Releases unused memory.
-    pub fn shrink(&mut self) {
-        self.pairs.shrink_to_fit();
     }
 
     pub fn forget(&mut self) {

@@ -70,7 +70,8 @@ impl Prepared {
         let operators = self.factorize(model, &distinct, watch)?;
         self.tell_pilots(model, &watch.log)?;
         let begun = Instant::now();
-        self.duals = Some(self.dualize(model, islands.into_iter().zip(rows).collect(), operators, watch)?);
+        let islands = islands.into_iter().map(Box::new).zip(rows).collect();
+        self.duals = Some(self.dualize(model, islands, operators, watch)?);
         self.made += 1;
         watch.phases.ended(Phase::DualOperators, begun);
         Ok(())
