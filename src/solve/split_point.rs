@@ -122,7 +122,11 @@ impl SplitPoint {
         // a spring of a body depends on no row
         let weight = |&i: &usize| {
             let of_row = |i: usize| rows.row(i).map(|(j, v)| v * v / stiffness[j]).sum::<f64>();
-            if i < rows.rows() { of_row(i) } else { 1.0 }
+            if i < rows.rows() {
+                of_row(i)
+            } else {
+                1.0
+            }
         };
         let x: Vec<f64> = face.rows().iter().map(|&i| self.x.get(i)).collect();
         let idle = face.idle(&x, &face.rows().iter().map(weight).collect::<Vec<_>>())?;
