@@ -58,7 +58,7 @@ impl<'a> Field<'a> {
         }
         let mut grounded = vec![false; n];
         for body in data.bodies.iter().filter(|body| !body.grounded.is_empty()) {
-            let moving = moving(body)?;
+            let moving = moving(body, &carried[body.range()])?;
             let free = |j: &&u32| carried[body.start + **j as usize] || moving.contains(j);
             let held = body.grounded.iter().filter(|j| !free(j));
             held.for_each(|j| grounded[body.start + *j as usize] = true);
@@ -117,7 +117,8 @@ impl<'a> Field<'a> {
     }
 }
 
-/// R of a body with its unit: those of the host, or of `R'D~R = U` if some of its unknowns are carried.
+/// R of a body with its unit: those of the host, or of `R'D~R = U` if some of its unknowns are carried or may be by more rows than
+/// have a force here: then it was scaled in another metric, and all of u would count as deformation.
 fn motions<'a>(
     body: &BodyData<'a>,
     unit: f64,
@@ -125,7 +126,7 @@ fn motions<'a>(
     carried: &[bool],
 ) -> Result<(Cow<'a, Matrix>, f64)> {
     let given = body.null_space;
-    if given.cols == 0 || !carried[body.range()].contains(&true) {
+    if given.cols == 0 || !body.soft && !carried[body.range()].contains(&true) {
         return Ok((Cow::Borrowed(given), body.unit));
     }
     let root = |i: usize| metric[body.start + i].sqrt();
@@ -136,13 +137,20 @@ fn motions<'a>(
 }
 
 /// Grounded unknowns j of a body that its null space moves nevertheless, `|K_jj R_j| > 1/4 sum_k |K_jk||R_k|`: they are
-/// held only by a stiff neighbour, which may itself move.
-fn moving(body: &BodyData) -> Result<HashSet<u32>> {
+/// held only by a stiff neighbour, which may itself move. The motion of a carried unknown is no such motion: K resists it, and it
+/// bends what a support holds.
+fn moving(body: &BodyData, carried: &[bool]) -> Result<HashSet<u32>> {
     let (n, motions) = (body.null_space.rows, body.null_space);
     let (mut image, mut terms, mut moving) = (vec![0.0; n], vec![0.0; n], HashSet::new());
+    let sum = |motion: &[f64], image: &[f64]| motion.iter().zip(image).map(|(r, f)| r * f).sum::<f64>();
     for k in 0..motions.cols {
-        body.stiffness.mul_with_terms(motions.col(k), &mut image, &mut terms)?;
-        let moves = |j: usize| 4.0 * (body.stiffness.metric(j, 0.0) * motions.get(j, k)).abs() > terms[j];
+        let motion = motions.col(k);
+        body.stiffness.mul_with_terms(motion, &mut image, &mut terms)?;
+        let sizes: Vec<f64> = motion.iter().map(|r| r.abs()).collect();
+        if carried.contains(&true) && sum(motion, &image) > NOISE * sum(&sizes, &terms) {
+            continue;
+        }
+        let moves = |j: usize| 4.0 * (body.stiffness.metric(j, 0.0) * motion[j]).abs() > terms[j];
         moving.extend(body.grounded.iter().filter(|j| moves(**j as usize)));
     }
     Ok(moving)

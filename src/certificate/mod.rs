@@ -94,6 +94,11 @@ impl BodyData<'_> {
     pub fn range(&self) -> Range<usize> {
         self.start..self.start + self.stiffness.order()
     }
+
+    /// D over its unknowns, force / length.
+    pub fn metric(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.stiffness.order()).map(|i| self.stiffness.metric(i, self.unit))
+    }
 }
 
 /// An answer over all unknowns, contact rows, equality rows of the island.

@@ -9,6 +9,7 @@
 //! or resisted weakly, T'G_F with orthonormal rows replaces G_F, and T'e replaces e: `alpha = T beta`.
 
 use crate::error::Result;
+use crate::linalg::vector::NOISE;
 use crate::linalg::{Entries, Matrix, PivotedCholesky, SpdSolver};
 use crate::platform::{interrupt, tally};
 use crate::qp::coarse::Coarse;
@@ -101,6 +102,18 @@ impl<'a> Face<'a> {
         let beta = coarse.solve(&self.in_basis(&left));
         self.spread.mul_add(1.0, &beta, &mut x);
         Ok((x, self.of_basis(beta)))
+    }
+
+    /// The part of x on F that acts on nothing, since rows depend on each other: without it `sum weights_i x_i^2` is least.
+    pub fn idle(&self, x: &[f64], weights: &[f64]) -> Result<Vec<f64>> {
+        let (kernel, root) = (self.factor.kernel()?, |k: usize| weights[k].sqrt());
+        let basis = Matrix::from_fn(kernel.rows, kernel.cols, |k, j| root(k) * kernel.get(k, j))?;
+        let basis = basis.orthonormalised(NOISE);
+        let mut idle = vec![0.0; x.len()];
+        let weighted: Vec<f64> = x.iter().enumerate().map(|(k, x)| root(k) * x).collect();
+        basis.mul_add(1.0, &basis.mul_transposed(&weighted), &mut idle);
+        idle.iter_mut().enumerate().for_each(|(k, x)| *x /= root(k));
+        Ok(idle)
     }
 
     /// `T'v`

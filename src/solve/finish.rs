@@ -164,6 +164,10 @@ impl<'a> Finish<'a, '_> {
             return Ok(Some(face.undetermined()));
         }
         let Some(face) = Face::new(*qp, direct.entries, rows)? else { return Ok(None) };
+        // else it began without forces
+        if self.passed {
+            point.settle(self.recovery, &face)?;
+        }
         let mut feedback = Feedback::on(face, point.alpha.len(), &self.negative)?;
         self.correct(point, FaceSolver::Dense(&feedback))?;
         if feedback.face.is_truncated() && Rung::AllRows.is_tried() {

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::linalg::twofold::TwofoldVector;
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::qp::friction::{Corrected, State};
-use crate::qp::Point;
+use crate::qp::{Face, Point};
 use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovery};
@@ -111,6 +111,29 @@ impl SplitPoint {
     pub fn hold(&mut self, active: &[bool]) {
         (0..active.len()).filter(|&i| active[i]).for_each(|i| self.x.set_to_zero(i));
         self.corrected.fill(0.0);
+    }
+
+    /// Takes away forces that cancel between rows of a face which depend on each other, as far as contact rows still press: beside
+    /// soft bodies their rounding would exceed what these carry. Each force counts by the motions that it would cause alone, by
+    /// D even at carried unknowns.
+    pub fn settle(&mut self, recovery: &Recovery, face: &Face) -> Result<()> {
+        let (rows, bounded) = (&recovery.ready.rows.matrix, &recovery.scaled.gaps.bounded);
+        let stiffness: Vec<f64> = recovery.data.bodies.iter().flat_map(|body| body.metric()).collect();
+        // a spring of a body depends on no row
+        let weight = |&i: &usize| {
+            let of_row = |i: usize| rows.row(i).map(|(j, v)| v * v / stiffness[j]).sum::<f64>();
+            if i < rows.rows() {
+                of_row(i)
+            } else {
+                1.0
+            }
+        };
+        let x: Vec<f64> = face.rows().iter().map(|&i| self.x.get(i)).collect();
+        let idle = face.idle(&x, &face.rows().iter().map(weight).collect::<Vec<_>>())?;
+        let lifts = |k: &usize| bounded[face.rows()[*k]] && idle[*k] > 0.0;
+        let part = (0..x.len()).filter(lifts).map(|k| x[k] / idle[k]).fold(1.0, f64::min).max(0.0);
+        face.rows().iter().zip(idle).for_each(|(&i, idle)| self.x.add(i, -part * idle));
+        Ok(())
     }
 
     /// x without the rounding of forces that are zero.

@@ -98,6 +98,26 @@ impl PivotedCholesky {
         }
         Ok(x)
     }
+
+    /// A basis of the x with `A x = 0` up to rounding, n x (n - rank), with all pivots that are more than rounding.
+    pub fn kernel(&self) -> Result<Matrix> {
+        let (n, rank) = (self.factor.rows, self.full_rank);
+        let mut along = Matrix::from_fn(rank, n - rank, |k, j| self.factor.get(rank + j, k))?;
+        let leading = MatRef::from_column_major_slice(&self.factor.data, n, n).submatrix(0, 0, rank, rank);
+        let _room = headroom(PRODUCTS, "the kernel of a dense factor")?;
+        let view = MatMut::from_column_major_slice_mut(&mut along.data, rank, n - rank);
+        solve_upper_triangular_in_place(leading.transpose(), view, Par::Seq);
+        let mut kernel = Matrix::zeros(n, n - rank)?;
+        for j in 0..n - rank {
+            self.order[..rank]
+                .iter()
+                .enumerate()
+                .for_each(|(k, &i)| kernel.set(i, j, -along.get(k, j) * self.inverse_root[i]));
+            let own = self.order[rank + j];
+            kernel.set(own, j, self.inverse_root[own]);
+        }
+        Ok(kernel)
+    }
 }
 
 #[cfg(test)]
@@ -137,6 +157,12 @@ mod tests {
             let found = image(&a, &solution);
             assert!((0..n).all(|i| (found[i] - b.get(i, 0)).abs() <= 1e-7 * scale[i] * n as f64));
             assert!(solution.data.iter().filter(|x| **x != 0.0).count() <= rank);
+            let kernel = factor.kernel().unwrap();
+            assert_eq!((kernel.rows, kernel.cols), (n, n - rank));
+            for j in 0..kernel.cols {
+                let image = a.mul_transposed(kernel.col(j));
+                assert!((0..n).all(|i| image[i].abs() <= 1e-9 * scale[i] * n as f64), "{image:?}");
+            }
         }
     }
 
