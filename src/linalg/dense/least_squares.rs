@@ -1,20 +1,26 @@
 //! `argmin |A c - b|` of a dense matrix that may be rank-deficient, by QR with pivots.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::householder::{
+    apply_block_householder_sequence_transpose_on_the_left_in_place_scratch as transposed_scratch,
+    apply_block_householder_sequence_transpose_on_the_left_in_place_with_conj as apply_transposed,
+};
 use faer::linalg::solvers::ColPivQr;
-use faer::Mat;
+use faer::{Conj, Mat, Par};
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, dot, norm};
+use crate::linalg::vector::{axpy, norm};
 use crate::linalg::Matrix;
-use crate::platform::memory::{headroom, zeros, PRODUCTS};
+use crate::platform::memory::{headroom, refusal, zeros, PRODUCTS};
 
-/// Number of matrices of the size of A in memory: A, its reflectors, Q, R.
-const MATRICES: usize = 5;
+const WHAT: &str = "a least squares problem";
+/// Number of matrices of the size of A in memory: A, its copy, its reflectors, R.
+const MATRICES: usize = 4;
 
 /// c, with zeros for dependent columns: a pivot of A with columns of unit length counts as 0 below `cut` times the first.
 pub fn least_squares(a: &Matrix, b: &[f64], cut: f64) -> Result<Vec<f64>> {
-    let _room = headroom(PRODUCTS + MATRICES * a.data.len() * size_of::<f64>(), "a least squares problem")?;
-    let mut c = zeros(a.cols, "a least squares problem")?;
+    let _room = headroom(PRODUCTS + MATRICES * a.data.len() * size_of::<f64>(), WHAT)?;
+    let mut c = zeros(a.cols, WHAT)?;
     let lengths: Vec<f64> = (0..a.cols).map(|j| norm(a.col(j))).collect();
     if a.rows == 0 || a.cols == 0 || !lengths.iter().all(|length| length.is_finite()) {
         return Ok(c);
@@ -23,13 +29,16 @@ pub fn least_squares(a: &Matrix, b: &[f64], cut: f64) -> Result<Vec<f64>> {
     let units: Vec<f64> = (0..a.cols).map(unit).collect();
     let scaled = Mat::from_fn(a.rows, a.cols, |i, j| a.get(i, j) / units[j]);
     let qr = ColPivQr::new(scaled.as_ref());
-    let (q, r) = (qr.compute_thin_Q(), qr.thin_R());
-    let (order, _) = qr.P().arrays();
+    let (r, (order, _)) = (qr.thin_R(), qr.P().arrays());
     let first = r[(0, 0)].abs();
     let found = a.rows.min(a.cols);
     let rank = (0..found).find(|&k| !(r[(k, k)].abs() > cut * first)).unwrap_or(found);
-    let column = |k: usize| q.col(k).try_as_col_major().map_or(&[][..], |column| column.as_slice());
-    let mut y: Vec<f64> = (0..rank).map(|k| dot(column(k), b)).collect();
+    let mut y = Mat::from_fn(a.rows, 1, |i, _| b[i]);
+    let need = transposed_scratch::<f64>(a.rows, qr.Q_coeff().nrows(), 1);
+    let mut stack = MemBuffer::try_new(need).map_err(|_| refusal(need.unaligned_bytes_required(), WHAT))?;
+    let stack = MemStack::new(&mut stack);
+    apply_transposed(qr.Q_basis(), qr.Q_coeff(), Conj::No, y.as_mut(), Par::Seq, stack);
+    let mut y: Vec<f64> = (0..rank).map(|k| y[(k, 0)]).collect();
     for k in (0..rank).rev() {
         y[k] /= r[(k, k)];
         let above: Vec<f64> = (0..k).map(|i| r[(i, k)]).collect();

@@ -6,7 +6,7 @@ use crate::linalg::vector::{dot, norm};
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::{Face, Model};
 use crate::qp::friction::motions::{Motions, Turned};
-use crate::qp::friction::pairs::{Pair, Pairs, Step};
+use crate::qp::friction::pairs::{Pair, Pairs, Step, CUT};
 use crate::qp::friction::{FrictionProblem, OnFace, Slide};
 use crate::qp::{Counts, Observer, Rung, StepKind, StepReport};
 
@@ -81,19 +81,21 @@ impl Run<'_, '_> {
         Ok(now)
     }
 
-    /// Adds directions to the pairs until a trial reduces the merit or the model is solved; returns whether the merit
-    /// fell.
+    /// Adds directions to the pairs until a trial reduces the merit, the model is solved or no direction is new; returns whether the
+    /// merit fell.
     fn step(&mut self, model: &Model, now: &Point) -> Result<Option<(Point, bool)>> {
         let preconditioner = self.problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
         let mut there = (now.x.clone(), now.r.clone());
         for count in 1..=DIRECTIONS {
             let v = self.direction(model, preconditioner.as_deref(), (&there.0, &there.1))?;
-            if !self.keep(v, now, model)? {
+            let is_new = self.keep(v, now, model)?;
+            if self.pairs.count() == 0 {
                 return Ok(None);
             }
             let step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
             let (best, falls) = self.best_trial(model, now, &step, &TRIALS)?;
-            if falls || step.rest < SOLVED || count == DIRECTIONS || self.counts.products >= self.limit {
+            let is_last = !is_new || count == DIRECTIONS || self.counts.products >= self.limit;
+            if falls || step.rest < SOLVED || is_last {
                 return Ok(Some((best, falls)));
             }
             there = step.from(&now.x, &now.r, 1.0);
@@ -209,15 +211,19 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    /// Adds the pair of a direction, normalised to length 1, and its image: the only product of a step. False: there is
-    /// no direction.
+    /// Adds the pair of a direction, orthonormal to the others, and its image: the only product of a step. False: there is no
+    /// new direction. A combination of directions that nearly agree would multiply the rounding of `G v`; in two passes, as
+    /// rounding grows with what is removed.
     pub fn keep(&mut self, mut v: Vec<f64>, now: &Point, model: &Model) -> Result<bool> {
-        let size = norm(&v);
-        if !(size > 0.0 && size < f64::INFINITY) {
-            return Ok(false);
+        for least in [0.0, CUT] {
+            let size = norm(&v);
+            if !(size > least && size < f64::INFINITY) {
+                return Ok(false);
+            }
+            v.iter_mut().for_each(|v| *v /= size);
+            self.pairs.make_orthogonal(&mut v);
         }
-        v.iter_mut().for_each(|v| *v /= size);
-        // normalisation of a long direction leaves a larger error
+        // normalisation leaves a larger error
         self.without_motions(&mut v)?;
         let none = vec![0.0; self.problem.qp.e.len()];
         let unbalanced = self.imbalance(&v, &none)?.sqrt();

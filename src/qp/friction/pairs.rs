@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use crate::error::Result;
 use crate::linalg::dense::least_squares::least_squares;
-use crate::linalg::vector::{axpy, norm};
+use crate::linalg::vector::{axpy, dot, norm};
 use crate::linalg::Matrix;
 use crate::platform::{interrupt, tally};
 use crate::qp::between_solves::locked;
@@ -14,8 +14,8 @@ use crate::qp::friction::face::Model;
 
 /// Limit of pairs; the oldest pair is dropped first.
 const MOST: usize = 200;
-/// Columns of unit length are dependent if less than this part is left beside the others.
-const CUT: f64 = 1e-12;
+/// Directions, and images of unit length, depend on others if less than this part is left beside these.
+pub const CUT: f64 = 1e-12;
 /// Multiplications per row and square of the number of pairs in a step beside its product: two minimisations over all pairs, each with a
 /// factorisation by reflections and the product of these.
 const BESIDE: usize = 4;
@@ -30,7 +30,7 @@ pub struct Pairs {
     kept: VecDeque<Pair>,
 }
 
-/// A direction of length 1 with its image.
+/// A direction of length 1, orthogonal to the others, with its image.
 #[derive(Debug, Clone)]
 pub struct Pair {
     pub v: Vec<f64>,
@@ -132,6 +132,11 @@ impl Pairs {
     pub fn stiffen(&mut self, first: usize, by: f64) {
         let images = self.kept.iter_mut().flat_map(|pair| &mut pair.image[first..]);
         images.for_each(|image| *image /= by);
+    }
+
+    /// `v <- v - V V'v`
+    pub fn make_orthogonal(&self, v: &mut [f64]) {
+        self.kept.iter().for_each(|pair| axpy(-dot(&pair.v, v), &pair.v, v));
     }
 
     pub fn keep(&mut self, pair: Pair) {
