@@ -54,6 +54,7 @@ pub fn least_squares(a: &Matrix, b: &[f64], cut: f64) -> Result<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::vector::dot;
 
     #[test]
     fn a_column_that_depends_on_others_is_not_used_and_the_rest_is_orthogonal() {
