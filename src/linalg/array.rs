@@ -8,8 +8,9 @@ use std::slice;
 #[derive(Debug, Clone)]
 pub struct Array<T> {
     own: Vec<T>,
-    /// The host's numbers, used instead of `own`.
-    host: Option<Borrowed<T>>,
+    /// The host's numbers, used instead of `own` if `left`; never without a value, since loops test its length before `left`.
+    host: Borrowed<T>,
+    left: bool,
 }
 
 /// Numbers in the memory of the host, which may change them between two calls.
@@ -31,6 +32,10 @@ impl<T> Borrowed<T> {
     pub unsafe fn new(start: NonNull<T>, len: usize) -> Self {
         Self { start, len }
     }
+
+    fn none() -> Self {
+        Self { start: NonNull::dangling(), len: 0 }
+    }
 }
 
 impl<T> Deref for Borrowed<T> {
@@ -44,7 +49,7 @@ impl<T> Deref for Borrowed<T> {
 
 impl<T> Array<T> {
     pub fn is_of_host(&self) -> bool {
-        self.host.is_some()
+        self.left
     }
 
     /// Bytes that the library keeps for it.
@@ -56,8 +61,9 @@ impl<T> Array<T> {
 impl<T: Clone> Array<T> {
     /// The numbers in the library's own memory.
     pub fn to_mut(&mut self) -> &mut Vec<T> {
-        if let Some(host) = self.host.take() {
-            self.own = host.to_vec();
+        if self.left {
+            self.own = self.host.to_vec();
+            (self.host, self.left) = (Borrowed::none(), false);
         }
         &mut self.own
     }
@@ -71,9 +77,10 @@ impl<T> Deref for Array<T> {
     type Target = [T];
 
     fn deref(&self) -> &[T] {
-        match &self.host {
-            Some(host) => host,
-            None => &self.own,
+        if self.left {
+            &self.host
+        } else {
+            &self.own
         }
     }
 }
@@ -86,13 +93,13 @@ impl<T: Clone> DerefMut for Array<T> {
 
 impl<T> From<Vec<T>> for Array<T> {
     fn from(own: Vec<T>) -> Self {
-        Self { own, host: None }
+        Self { own, host: Borrowed::none(), left: false }
     }
 }
 
 impl<T> From<Borrowed<T>> for Array<T> {
     fn from(host: Borrowed<T>) -> Self {
-        Self { own: Vec::new(), host: Some(host) }
+        Self { own: Vec::new(), host, left: true }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::linalg::vector::{dot, norm};
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::{Face, Model};
 use crate::qp::friction::motions::{Motions, Turned};
-use crate::qp::friction::pairs::{Pair, Pairs, Step, CUT};
+use crate::qp::friction::pairs::{Pair, Pairs, Step};
 use crate::qp::friction::{FrictionProblem, OnFace, Slide};
 use crate::qp::{Counts, Observer, Rung, StepKind, StepReport};
 
@@ -212,17 +212,9 @@ impl Run<'_, '_> {
     }
 
     /// Adds the pair of a direction, orthonormal to the others, and its image: the only product of a step. False: there is no
-    /// new direction. A combination of directions that nearly agree would multiply the rounding of `G v`; in two passes, as
-    /// rounding grows with what is removed.
-    pub fn keep(&mut self, mut v: Vec<f64>, now: &Point, model: &Model) -> Result<bool> {
-        for least in [0.0, CUT] {
-            let size = norm(&v);
-            if !(size > least && size < f64::INFINITY) {
-                return Ok(false);
-            }
-            v.iter_mut().for_each(|v| *v /= size);
-            self.pairs.make_orthogonal(&mut v);
-        }
+    /// new direction.
+    pub fn keep(&mut self, v: Vec<f64>, now: &Point, model: &Model) -> Result<bool> {
+        let Some(mut v) = self.pairs.orthonormal(v) else { return Ok(false) };
         // normalisation leaves a larger error
         self.without_motions(&mut v)?;
         let none = vec![0.0; self.problem.qp.e.len()];

@@ -15,7 +15,7 @@ use crate::qp::friction::face::Model;
 /// Limit of pairs; the oldest pair is dropped first.
 const MOST: usize = 200;
 /// Directions, and images of unit length, depend on others if less than this part is left beside these.
-pub const CUT: f64 = 1e-12;
+const CUT: f64 = 1e-12;
 /// Multiplications per row and square of the number of pairs in a step beside its product: two minimisations over all pairs, each with a
 /// factorisation by reflections and the product of these.
 const BESIDE: usize = 4;
@@ -134,9 +134,18 @@ impl Pairs {
         images.for_each(|image| *image /= by);
     }
 
-    /// `v <- v - V V'v`
-    pub fn make_orthogonal(&self, v: &mut [f64]) {
-        self.kept.iter().for_each(|pair| axpy(-dot(&pair.v, v), &pair.v, v));
+    /// The unit vector that v adds to the directions kept; none if v adds nothing. Combinations of directions that nearly agree would
+    /// multiply the rounding of `G v`. In two passes, as rounding grows with what is removed.
+    pub fn orthonormal(&self, mut v: Vec<f64>) -> Option<Vec<f64>> {
+        for least in [0.0, CUT] {
+            let size = norm(&v);
+            if !(size > least && size < f64::INFINITY) {
+                return None;
+            }
+            v.iter_mut().for_each(|v| *v /= size);
+            self.kept.iter().for_each(|pair| axpy(-dot(&pair.v, &v), &pair.v, &mut v));
+        }
+        Some(v)
     }
 
     pub fn keep(&mut self, pair: Pair) {
@@ -189,6 +198,22 @@ mod tests {
         between.keep(&[0, 2], Pairs::default(), 0);
         between.forget();
         assert!(between.take(&[0, 2]).is_none());
+    }
+
+    #[test]
+    fn a_direction_that_nearly_agrees_with_others_is_kept_as_what_it_adds_to_them() {
+        let mut pairs = Pairs::default();
+        for v in [[3.0, 4.0, 0.0], [3.0, 4.0, 1e-7]] {
+            let v = pairs.orthonormal(v.to_vec()).unwrap();
+            pairs.keep(Pair { v, image: vec![], unbalanced: 0.0 });
+        }
+        let [first, second] = [0, 1].map(|k| &pairs.kept[k].v);
+        assert!(dot(first, second).abs() < 1e-16 && (norm(second) - 1.0).abs() < 1e-15, "{second:?}");
+        assert!((second[2] - 1.0).abs() < 1e-15);
+        for nothing in [[0.0; 3], [6.0, 8.0, 0.0], [f64::NAN, 0.0, 0.0], [f64::INFINITY, 0.0, 0.0]] {
+            assert!(pairs.orthonormal(nothing.to_vec()).is_none(), "{nothing:?}");
+        }
+        assert!(pairs.orthonormal(vec![0.0, 1e-300, 0.0]).is_some());
     }
 
     /// 30 pairs of 1000 rows: 60 with those of the next solve, 4 x 1060 x 3600 multiplications.
