@@ -2,7 +2,7 @@
 //! pair.
 
 use crate::error::Result;
-use crate::linalg::vector::{dot, norm};
+use crate::linalg::vector::dot;
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::{Face, Model};
 use crate::qp::friction::motions::{Motions, Turned};
