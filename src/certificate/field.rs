@@ -142,12 +142,13 @@ fn motions<'a>(
 fn moving(body: &BodyData, carried: &[bool]) -> Result<HashSet<u32>> {
     let (n, motions) = (body.null_space.rows, body.null_space);
     let (mut image, mut terms, mut moving) = (vec![0.0; n], vec![0.0; n], HashSet::new());
-    let sum = |motion: &[f64], image: &[f64]| motion.iter().zip(image).map(|(r, f)| r * f).sum::<f64>();
+    let any_carried = carried.contains(&true);
     for k in 0..motions.cols {
         let motion = motions.col(k);
         body.stiffness.mul_with_terms(motion, &mut image, &mut terms)?;
-        let sizes: Vec<f64> = motion.iter().map(|r| r.abs()).collect();
-        if carried.contains(&true) && sum(motion, &image) > NOISE * sum(&sizes, &terms) {
+        let work = || motion.iter().zip(&image).map(|(r, f)| r * f).sum::<f64>();
+        let of_terms = || motion.iter().zip(&terms).map(|(r, f)| r.abs() * f).sum::<f64>();
+        if any_carried && work() > NOISE * of_terms() {
             continue;
         }
         let moves = |j: usize| 4.0 * (body.stiffness.metric(j, 0.0) * motion[j]).abs() > terms[j];

@@ -140,8 +140,9 @@ impl Prepared {
         watch.every_body(&part, assemble, |p, operator| made[island_of[p]][number_in[p]] = operator)?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
         for (((island, (rows, compliance)), draft), made) in islands.into_iter().zip(drafts).zip(made) {
-            self.work.columns_computed += draft.columns().computed;
-            self.work.columns_kept += draft.columns().kept;
+            let columns = draft.columns();
+            self.work.columns_computed += columns.computed;
+            self.work.columns_kept += columns.kept;
             // Algorithm 3 uses the rigid modes without scaling, as in the paper
             let dual = draft.finish(made, compliance, !rows.coupled);
             let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
