@@ -52,14 +52,14 @@ pub fn known_face(
     let g = run.gradient(x)?;
     let r = run.gaps(&g, alpha);
     run.counts.products = 0;
-    let model = run.model(Face::at(problem.cones, x, &r, RHO))?;
+    let mut model = run.model(Face::at(problem.cones, x, &r, RHO))?;
     let (x, mut g) = (first.point, run.gradient(&vec![0.0; r.len()])?);
     run.measure(&g, limits.tolerance)?;
     g = run.gradient(&x)?;
     let alpha = run.turned(&model, &x, &g, &vec![0.0; problem.qp.e.len()])?;
     let start = run.point(x, g, alpha)?;
     let size = norm(&model.reduced(model.face.residual(&start.x, &start.r))?);
-    run.enough(&model, &start, (run.small / size, usize::MAX))?;
+    run.enough(&mut model, &start, (run.small / size, usize::MAX))?;
     Ok(run.counts.products + 1)
 }
 

@@ -1,6 +1,8 @@
 //! A face: the states of all nodes and the linear model of the laws on it, `L x = ...` for held values, `W'r + D s = ...`
 //! elsewhere, with the coarse spaces G W and G Z.
 
+use std::collections::VecDeque;
+
 use crate::error::Result;
 use crate::qp::friction::cones::{direction, length, Cones, Node};
 use crate::qp::friction::coordinates::{Coordinate, Law, EQUATION};
@@ -146,6 +148,8 @@ pub struct Model {
     /// `(A w^2 A')^+` for A = G W and for A = G Z.
     plain: Turned,
     through: Turned,
+    /// Images of pairs, reduced, as far as they were asked for, and the number of the first pair.
+    pub images: (usize, VecDeque<Vec<f64>>),
 }
 
 impl Model {
@@ -153,7 +157,7 @@ impl Model {
         let weights = face.weights();
         let plain = motions.inverse(&face.coordinates, weights.clone(), (false, CUT))?;
         let through = motions.inverse(&face.coordinates, weights, (true, CUT))?;
-        Ok(Self { face, plain, through })
+        Ok(Self { face, plain, through, images: Default::default() })
     }
 
     /// `da = (A w^2 A')^+ A w^2 q` of a residual, r entries.

@@ -59,31 +59,40 @@ pub struct Run<'a, 'w> {
 }
 
 impl Run<'_, '_> {
-    /// Continues from `now` until the laws are satisfied, or the merit falls too slowly.
+    /// Continues from `now` until the laws are satisfied, or the merit falls too slowly: steps to new faces with the existing pairs
+    /// while the merit falls, then one with a new pair.
     pub fn newton(&mut self, mut now: Point) -> Result<Point> {
         let mut best = (now.merit, self.counts.newton, self.counts.products);
-        if self.pairs.count() > 0 {
-            now = self.without_products(now)?;
-        }
-        while !self.is_met(&now)
-            && self.counts.newton < best.1 + STEPS
-            && self.counts.products < self.limit.min(best.2 + PRODUCTS)
-        {
-            let model = self.model(Face::at(self.problem.cones, &now.x, &now.r, RHO))?;
-            let Some((next, falls)) = self.step(&model, &now)? else { break };
-            self.counts.newton += 1;
-            now = if falls { self.without_products(next)? } else { next };
+        let mut inner = 0;
+        while !self.is_met(&now) {
+            let mut model = self.model(Face::at(self.problem.cones, &now.x, &now.r, RHO))?;
+            if inner < INNER_STEPS && self.pairs.count() > 0 && Rung::Inner.is_tried() {
+                let step = self.pairs.minimise(&mut model, (&now.x, &now.r))?;
+                let (next, falls) = self.best_trial(&model, &now, &step, &INNER_TRIALS)?;
+                if falls {
+                    (now, inner) = (next, inner + 1);
+                    continue;
+                }
+            }
             self.reached(&now);
             if now.merit < ENOUGH * best.0 {
                 best = (now.merit, self.counts.newton, self.counts.products);
             }
+            let most = self.limit.min(best.2 + PRODUCTS);
+            if self.counts.newton >= best.1 + STEPS || self.counts.products >= most {
+                break;
+            }
+            let Some((next, falls)) = self.step(&mut model, &now)? else { break };
+            self.counts.newton += 1;
+            (now, inner) = (next, if falls { 0 } else { INNER_STEPS });
         }
+        self.reached(&now);
         Ok(now)
     }
 
     /// Adds directions to the pairs until a trial reduces the merit, the model is solved or no direction is new; returns whether the
     /// merit fell.
-    fn step(&mut self, model: &Model, now: &Point) -> Result<Option<(Point, bool)>> {
+    fn step(&mut self, model: &mut Model, now: &Point) -> Result<Option<(Point, bool)>> {
         let preconditioner = self.problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
         let mut there = (now.x.clone(), now.r.clone());
         for count in 1..=DIRECTIONS {
@@ -92,7 +101,7 @@ impl Run<'_, '_> {
             if self.pairs.count() == 0 {
                 return Ok(None);
             }
-            let step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
+            let step = self.pairs.minimise(model, (&now.x, &now.r))?;
             let (best, falls) = self.best_trial(model, now, &step, &TRIALS)?;
             let is_last = !is_new || count == DIRECTIONS || self.counts.products >= self.limit;
             if falls || step.rest < SOLVED || is_last {
@@ -101,23 +110,6 @@ impl Run<'_, '_> {
             there = step.from(&now.x, &now.r, 1.0);
         }
         Ok(None)
-    }
-
-    /// Steps to new faces with the existing pairs, while the merit falls.
-    fn without_products(&mut self, mut now: Point) -> Result<Point> {
-        for _ in 0..INNER_STEPS {
-            if self.is_met(&now) || !Rung::Inner.is_tried() {
-                break;
-            }
-            let model = self.model(Face::at(self.problem.cones, &now.x, &now.r, RHO))?;
-            let step = self.pairs.minimise(&model, model.face.residual(&now.x, &now.r))?;
-            let (next, falls) = self.best_trial(&model, &now, &step, &INNER_TRIALS)?;
-            if !falls {
-                break;
-            }
-            now = next;
-        }
-        Ok(now)
     }
 
     /// The first trial that reduces the merit sufficiently, otherwise the best trial; a is that of the old face at the

@@ -80,8 +80,8 @@ impl Run<'_, '_> {
             face.push_node(node, at.closed[i], state, ([1.0, 0.0], 0.0));
         }
         face.finish(self.problem.cones);
-        let model = self.model(face)?;
-        let step = self.enough(&model, start, (LEFT, DIRECTIONS))?;
+        let mut model = self.model(face)?;
+        let step = self.enough(&mut model, start, (LEFT, DIRECTIONS))?;
         let (x, g) = step.from(&start.x, &start.g, 1.0);
         let alpha = self.turned(&model, &x, &g, &start.alpha)?;
         let found = self.point(x, g, alpha)?;

@@ -28,6 +28,8 @@ const NOISE: f64 = 16.0 * f64::EPSILON;
 #[derive(Debug, Default, Clone)]
 pub struct Pairs {
     kept: VecDeque<Pair>,
+    /// Pairs dropped before the first one kept.
+    dropped: usize,
 }
 
 /// A direction of length 1, orthogonal to the others, with its image.
@@ -151,21 +153,36 @@ impl Pairs {
     pub fn keep(&mut self, pair: Pair) {
         if self.kept.len() >= MOST {
             self.kept.pop_front();
+            self.dropped += 1;
         }
         self.kept.push_back(pair);
     }
 
+    /// The images that the model has not yet, reduced; pairs dropped leave it.
+    fn reduce(&self, model: &mut Model) -> Result<()> {
+        let (first, images) = &mut model.images;
+        images.drain(..images.len().min(self.dropped - *first));
+        *first = self.dropped;
+        for Pair { v, image, .. } in self.kept.iter().skip(model.images.1.len()) {
+            let reduced = model.reduced(model.face.image(v, image))?;
+            model.images.1.push_back(reduced);
+        }
+        Ok(())
+    }
+
     /// `dx = V c`, `c = argmin | [L V; P w (W'F V + D S V); N] c + [first; P w q; 0] |`, with N = diag of the rounding of
     /// `G v` and `F v`: without N, pairs of far larger steps would seem to reduce the residual by their rounding.
-    pub fn minimise(&self, model: &Model, residual: Vec<f64>) -> Result<Step> {
+    pub fn minimise(&self, model: &mut Model, (x, r): (&[f64], &[f64])) -> Result<Step> {
         interrupt::check()?;
         tally::costly();
-        let m = residual.len();
-        let target = model.reduced(residual)?;
-        let pairs = self.kept.len();
+        let target = model.reduced(model.face.residual(x, r))?;
+        self.reduce(model)?;
+        let (m, pairs) = (target.len(), self.kept.len());
         let mut images = Matrix::zeros(m + pairs, pairs)?;
-        for (j, Pair { v, image, unbalanced }) in self.kept.iter().enumerate() {
-            images.col_mut(j)[..m].copy_from_slice(&model.reduced(model.face.image(v, image))?);
+        for (j, (Pair { image, unbalanced, .. }, reduced)) in
+            self.kept.iter().zip(&model.images.1).enumerate()
+        {
+            images.col_mut(j)[..m].copy_from_slice(reduced);
             images.set(m + j, j, NOISE * (norm(image) + 1.0) + unbalanced / model.face.rho);
         }
         let mut wanted: Vec<f64> = target.iter().map(|target| -target).collect();

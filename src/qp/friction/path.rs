@@ -58,9 +58,9 @@ impl Run<'_, '_> {
             }
             let by = Smoothing { eps, relaxed: way.relaxed };
             let (face, before) = face(cones, &now.x, &now.r, rho, by);
-            let model = self.model(face)?;
+            let mut model = self.model(face)?;
             let step = match way.solves {
-                Solves::Pairs { .. } => self.enough(&model, &now, (LEFT, DIRECTIONS))?,
+                Solves::Pairs { .. } => self.enough(&mut model, &now, (LEFT, DIRECTIONS))?,
                 Solves::Dense(dense) => {
                     self.counts.direct += 1;
                     dense.solved(&self.problem, &model.face, &now)?.0
@@ -77,9 +77,9 @@ impl Run<'_, '_> {
     }
 
     /// Adds at most `most` directions to the pairs until no more than this part of the residual is left.
-    pub fn enough(&mut self, model: &Model, now: &Point, (left, most): (f64, usize)) -> Result<Step> {
+    pub fn enough(&mut self, model: &mut Model, now: &Point, (left, most): (f64, usize)) -> Result<Step> {
         let preconditioner = self.problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
-        let mut step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
+        let mut step = self.pairs.minimise(model, (&now.x, &now.r))?;
         for _ in 0..most {
             if step.rest <= left || self.counts.products >= self.limit {
                 break;
@@ -89,7 +89,7 @@ impl Run<'_, '_> {
             if !self.keep(v, now, model)? {
                 break;
             }
-            step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
+            step = self.pairs.minimise(model, (&now.x, &now.r))?;
         }
         Ok(step)
     }
