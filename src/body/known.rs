@@ -57,7 +57,8 @@ impl Known {
         pilots.carried.iter().for_each(|&x| root[x] = 0.0);
         let Matrix { rows, cols, .. } = self.null_space;
         let others = Matrix::from_fn(rows, cols, |i, j| root[i] * self.null_space.get(i, j))?;
-        let others = others.orthonormalised(DEPENDENT);
+        // of vectors of length 1: what is less is their rounding
+        let others = others.spanned(DEPENDENT).0;
         if others.cols < cols || pilots.carried.iter().any(|x| self.fixing.contains(x)) {
             (self.fixing, self.given) = (fixing_dofs(&others, &vec![1.0; rows])?, false);
         }
@@ -146,5 +147,27 @@ impl Known {
             near: None,
         };
         inverse.judged_by(&self.k, self.soft, self.pilots.as_ref(), self.rigid.as_ref())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Symmetric;
+
+    #[test]
+    fn a_null_vector_that_moves_only_pilots_is_left_out_whatever_its_rounding_elsewhere() {
+        let free = Symmetric::new(vec![0, 1, 2, 4], vec![0, 1, 1, 2], vec![1e6, 1.0, -1.0, 1.0]);
+        for (vector, held, fixing) in [
+            ([0.0, 1.0, 1.0], 0, vec![1, 2]),
+            ([1e-17, 1.0, 1.0], 0, vec![1, 2]),
+            ([1.0; 3], 1, vec![0, 1, 2]),
+        ] {
+            let vectors = Matrix { rows: 3, cols: 1, data: vector.to_vec() };
+            let pilots = Pilots { metric: vec![1e6; 3].into(), carried: vec![1, 2].into() };
+            let known = Known::of(free.clone().into(), vectors, KNOWN, vec![1], false);
+            let known = known.with_pilots(pilots).unwrap();
+            assert_eq!((known.null_space.cols, known.fixing), (held, fixing), "{vector:?}");
+        }
     }
 }

@@ -132,12 +132,19 @@ impl Matrix {
 
     /// The same, with the column that each vector of the basis comes from.
     pub fn orthonormalised_in_order(mut self, drop: f64) -> (Self, Vec<usize>) {
-        let lengths: Vec<f64> = (0..self.cols).map(|j| norm(self.col(j))).collect();
-        for (j, &length) in lengths.iter().enumerate().filter(|(_, length)| **length > 0.0) {
-            self.col_mut(j).iter_mut().for_each(|v| *v /= length);
+        for j in 0..self.cols {
+            let length = norm(self.col(j));
+            if length > 0.0 {
+                self.col_mut(j).iter_mut().for_each(|v| *v /= length);
+            }
         }
+        self.spanned(drop)
+    }
+
+    /// The same without scaling: columns are left out if no more than the length `drop` is left.
+    pub fn spanned(mut self, drop: f64) -> (Self, Vec<usize>) {
         let (mut basis, mut order) = (Self { rows: self.rows, ..Self::default() }, Vec::new());
-        let mut left: Vec<usize> = (0..self.cols).filter(|&j| lengths[j] > 0.0).collect();
+        let mut left: Vec<usize> = (0..self.cols).collect();
         while let Some(at) = longest(&self, &left) {
             let j = left.remove(at);
             let mut column = self.col(j).to_vec();
