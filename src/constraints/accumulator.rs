@@ -32,7 +32,8 @@ impl Accumulator {
     }
 
     pub fn add(&mut self, j: usize, v: f64) {
-        if self.terms[j] == 0.0 {
+        // a product that underflows is no term
+        if self.terms[j] == 0.0 && v != 0.0 {
             self.columns.push(j);
         }
         self.value[j] += v;
@@ -64,5 +65,17 @@ impl Accumulator {
         self.columns.sort_unstable();
         let kept = self.columns.iter().filter(|&&j| self.value[j].abs() > ROUNDING * self.terms[j]);
         kept.map(|&j| (j, self.value[j] / length)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn terms_that_have_underflowed_repeat_no_column() {
+        let mut sum = Accumulator::new(2).unwrap();
+        [(1, 0.0), (0, 0.0), (1, 2.0), (0, 3.0)].into_iter().for_each(|(j, v)| sum.add(j, v));
+        assert_eq!(sum.divided(1.0), [(0, 3.0), (1, 2.0)]);
     }
 }

@@ -56,8 +56,9 @@ impl<'a> Near<'a> {
         may_stop
     }
 
-    /// What follows this solution, of which the certificate has said `judged`.
-    pub fn after(&mut self, solution: Solution, judged: &Judged) -> Result<Next> {
+    /// What follows this solution, of which the certificate has said `judged`. Where a motion of negative stiffness has been `driven`
+    /// up to a row, more than the load of the host is to be held.
+    pub fn after(&mut self, solution: Solution, judged: &Judged, driven: bool) -> Result<Next> {
         if let Judged::RowsReached(rows) = judged {
             rows.iter().for_each(|&i| self.far[i] = false);
             return Ok(Next::Run(Some(solution)));
@@ -68,7 +69,7 @@ impl<'a> Near<'a> {
         }
         match &solution.verdict {
             Verdict::Infeasible { .. } => {
-                if Unheld::least(self.case, self.scaled, &self.far)?.is_little() {
+                if !driven && Unheld::least(self.case, self.scaled, &self.far)?.is_little() {
                     return Ok(Next::Ended(solution));
                 }
             }

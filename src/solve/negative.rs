@@ -132,8 +132,11 @@ impl<'a> Search<'a, '_> {
         known.same = if is_same { known.same + 1 } else { 0 };
         let falling = self.falling(&round, known.last.as_ref().filter(|_| is_same), unsettled)?;
         match &falling {
-            Some((motion, rate)) if !unsettled => return Err(indefinite(self.case, &motion.v, *rate)?),
-            _ if !unsettled => return Ok(Next::End(Verdict::Solved)),
+            None if !unsettled => return Ok(Next::End(Verdict::Solved)),
+            // with friction there is no way downhill
+            Some((motion, rate)) if !unsettled && (self.recovery.friction || known.rounds >= ROUNDS) => {
+                return Err(indefinite(self.case, &motion.v, *rate)?)
+            }
             None if known.same > MENDED && round.feedback.is_some() && !self.recovery.friction => {
                 return Ok(Next::End(Verdict::Stalled))
             }
@@ -146,7 +149,7 @@ impl<'a> Search<'a, '_> {
             return Ok(Next::Step(last.followed()));
         }
         let next = match &falling {
-            Some((motion, rate)) => self.along(&round, motion, *rate)?,
+            Some((motion, rate)) => self.along(&round, (motion, *rate), !unsettled)?,
             None => self.settled(&round, known.same)?,
         };
         let is_to_mend =
@@ -242,9 +245,15 @@ impl<'a> Search<'a, '_> {
         Ok(motion.falls(self.recovery, &round.held)?.then_some((motion, rate)))
     }
 
-    /// The next step: along a motion on which the energy falls, up to the row that stops it.
-    fn along(&self, round: &Round, motion: &Sliding, rate: f64) -> Result<Step> {
-        let reach = motion.reach(self.recovery, &self.displacements(&round.x, &round.alpha)?, &round.held);
+    /// The next step: along a motion on which the energy falls, up to the row that stops it. From an equilibrium it falls in both
+    /// senses, and farther in that which rows stop later.
+    fn along(&self, round: &Round, (motion, rate): (&Sliding, f64), is_equilibrium: bool) -> Result<Step> {
+        let u = self.displacements(&round.x, &round.alpha)?;
+        let mut reach = motion.reach(self.recovery, &u, &round.held, 1.0);
+        if is_equilibrium {
+            let back = motion.reach(self.recovery, &u, &round.held, -1.0);
+            reach = if back > reach { -back } else { reach };
+        }
         if reach.is_infinite() {
             return Err(indefinite(self.case, &motion.v, rate)?);
         }

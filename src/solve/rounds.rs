@@ -47,7 +47,7 @@ pub fn solve_in_rounds<'a>(
         if solution.verdict.is_stop() {
             return Ok(solution);
         }
-        let solution = match near.after(solution, &judge.judged)? {
+        let solution = match near.after(solution, &judge.judged, step.b.iter().any(|b| *b != 0.0))? {
             near::Next::Ended(solution) => Solution { counts, ..solution },
             near::Next::Run(reached) => {
                 reached.iter().for_each(|solution| step.x.clone_from(&solution.x));

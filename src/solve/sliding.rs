@@ -97,12 +97,12 @@ impl Sliding {
         Ok(energy.value() < NOISE * terms - 2.0 * moved)
     }
 
-    /// The largest t for which `u + t v` violates no row marked in `held`; infinite if no such row stops the motion.
-    pub fn reach(&self, recovery: &Recovery, u: &[f64], held: &[bool]) -> f64 {
+    /// The largest t for which `u + sense t v` violates no row marked in `held`; infinite if no such row stops the motion.
+    pub fn reach(&self, recovery: &Recovery, u: &[f64], held: &[bool], sense: f64) -> f64 {
         let (rows, Gaps { value: gaps, bounded, .. }) = (&recovery.ready.rows.scaled, &recovery.scaled.gaps);
         let mut reach = f64::INFINITY;
         for i in (0..rows.rows()).filter(|&i| held[i] && bounded[i]) {
-            let closing = rows.row_dot(i, &self.v);
+            let closing = sense * rows.row_dot(i, &self.v);
             if closing > STILL * self.size(rows, i) {
                 reach = reach.min((gaps[i] - rows.row_dot(i, u)).max(0.0) / closing);
             }

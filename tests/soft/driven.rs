@@ -3,7 +3,7 @@
 use decks::dense::{eigenvalues, solve};
 use decks::Deck;
 use feti_contact::error::Kind;
-use feti_contact::solver::Modes;
+use feti_contact::solver::{Modes, Problem, RowKind, RowsInput, Storage};
 
 use crate::{
     add_diagonal, assert_same_bits_for_any_threads, column_on, difference, given, hand_over, oracle, solved,
@@ -130,6 +130,29 @@ fn an_answer_that_is_no_minimum_is_refused_with_its_motion() {
             // a tilt of the block about its foot moves its top aside
             let top = driven(&deck)[2 * body] - deck.offset(body);
             assert!(v[top].abs() > 0.2 && (v[top] / v[top + 2] - 1.0).abs() < 10.0, "{}", v[top]);
+        }
+    }
+}
+
+/// A column on its ridge between two stops, of which the second is farther: the ridge is an equilibrium.
+#[test]
+fn from_an_equilibrium_that_is_no_minimum_a_driven_body_moves_to_the_farther_stop() {
+    for (near, far) in [(0.5, 2.0), (1.0, f64::INFINITY)] {
+        let mut problem = Problem::new();
+        problem.add_body(1).unwrap();
+        problem.set_null_space(0, 1, 1, &[1.0], 1, Modes::Soft).unwrap();
+        problem.set_stiffness_dense(0, 1, &[-3.0], 1, Storage::Full).unwrap();
+        let rows = RowsInput {
+            ptr: &[0, 1, 2],
+            body: None,
+            dof: &[0, 0],
+            val: &[1.0, -1.0],
+            rhs: Some(&[near, far]),
+        };
+        problem.add_rows(RowKind::Inequality, rows).unwrap();
+        match solved(&mut problem) {
+            Ok(found) => assert_eq!((found.u, found.lambda), (vec![-far], vec![0.0, 3.0 * far])),
+            Err(error) => assert!(far.is_infinite() && error.kind == Kind::Indefinite, "{error}"),
         }
     }
 }
