@@ -42,7 +42,7 @@ pub struct Lengths<'a> {
     /// Of the problem: the largest of all bodies and of the lengths `|h| / max |b|` and `-c / max |b|` that rows demand;
     /// without loads and coordinates also the smallest gap. Other gaps may be far: they say nothing.
     whole: f64,
-    /// Of every unknown, the number of equality rows with it.
+    /// Of every unknown, the number of rigid equality rows with it.
     ties: Vec<u32>,
 }
 
@@ -77,7 +77,8 @@ impl Model {
             .chain(gaps().map(|gap| -gap))
             .fold(length, f64::max);
         let mut ties = vec![0; held.len()];
-        self.equalities.matrix.col.iter().for_each(|&j| ties[j] += 1);
+        let rigid = (0..self.equalities.len()).filter(|&i| self.equalities.compliance[i] == 0.0);
+        rigid.flat_map(|i| self.equalities.matrix.row(i)).for_each(|(j, _)| ties[j] += 1);
         Lengths { model: self, of_bodies, whole: length, ties }
     }
 
@@ -162,12 +163,12 @@ impl Lengths<'_> {
     }
 
     /// The rounding of the right-hand side of row i of a kind, times its largest entry: 64 eps of the longest body that it
-    /// touches. Where equality rows tie each of its unknowns, or its bodies have no length, that of the problem: there rounding
-    /// contradicts, elsewhere it is as harmless as it is small.
+    /// touches. Where rigid equality rows tie each unknown of a rigid row, or its bodies have no length, that of the problem: there
+    /// rounding contradicts, elsewhere, as beside a spring, it is as harmless as it is small.
     pub fn rounding(&self, kind: RowKind, i: usize) -> f64 {
         let (rows, ends) = (self.model.rows(kind), &self.model.offsets[1..]);
         let itself = u32::from(kind == RowKind::Equality);
-        let is_tied = rows.matrix.row(i).all(|(j, _)| self.ties[j] > itself);
+        let is_tied = rows.compliance[i] == 0.0 && rows.matrix.row(i).all(|(j, _)| self.ties[j] > itself);
         let bodies = rows.matrix.row(i).map(|(j, _)| ends.partition_point(|end| *end <= j));
         let own = bodies.map(|p| self.of_bodies[p]).fold(0.0, f64::max);
         let length = if is_tied || own == 0.0 { self.whole } else { own };

@@ -310,6 +310,18 @@ mod tests {
         });
     }
 
+    /// The last row penetrates by 45 eps: in two doubles that is no rounding.
+    #[test]
+    fn a_row_joins_as_soon_as_its_gap_exceeds_the_rounding_of_its_own_data() {
+        two_springs(0.0, |judge, _| {
+            for (beyond, open) in [(0.0, true), (1e-14, false), (-1e-14, true)] {
+                let u = vec![1.0, 2.0 + beyond];
+                let point = SplitPoint::at_origin(u, vec![2.0, 0.0], 0, 1.0);
+                assert_eq!(point.active(&judge.recovery), [false, open], "{beyond}");
+            }
+        });
+    }
+
     #[test]
     fn a_corrected_answer_takes_no_place_where_one_entry_is_worse() {
         let of = |ratio: f64| Entry { ratio, ..Entry::default() };

@@ -227,10 +227,11 @@ impl SplitPoint {
         let Gaps { value, bounded, .. } = &recovery.scaled.gaps;
         let terms =
             |i: usize| rows.row(i).map(|(j, v)| v.abs() * u[j].abs().max(self.corrected[j])).sum::<f64>();
-        let noise = |i: usize| NOISE * (value[i].abs() + terms(i));
+        let noise = |i: usize, of: f64| of * (value[i].abs() + terms(i));
         // a gap that corrections cannot close depends on other rows, which also carry its force
-        let leaves = |i: usize| x[i] < 0.0 || left[i] > noise(i);
-        let stays = |i: usize| if x[i] == 0.0 { left[i] >= -noise(i) } else { leaves(i) };
+        let leaves = |i: usize| x[i] < 0.0 || left[i] > noise(i, NOISE);
+        // in two doubles a gap is known to the rounding of its row
+        let stays = |i: usize| if x[i] == 0.0 { left[i] >= -noise(i, f64::EPSILON) } else { leaves(i) };
         (0..x.len()).map(|i| bounded[i] && stays(i)).collect()
     }
 }

@@ -103,6 +103,17 @@ fn an_interference_beside_a_body_that_travels_far_is_kept() {
     }
 }
 
+/// u_0 = u_1 + .1, and a spring of 1/4 from u_0 to .5; the problem is so long that 64 eps of it exceed .5.
+#[test]
+fn a_spring_at_a_tied_unknown_keeps_its_length_beside_a_body_that_travels_far() {
+    let mut problem = pairs(1.0, &[[3.0, 0.0], [1e14, 0.0]]);
+    add(&mut problem, RowKind::Equality, &[(0, 1.0), (1, -1.0)], 0.1);
+    add(&mut problem, RowKind::Equality, &[(0, 1.0)], 0.5);
+    problem.set_compliance(RowKind::Equality, 1, &[0.25]).unwrap();
+    assert!(is_solved(problem.solve()));
+    assert!((problem.displacements().unwrap()[0] - 0.85).abs() < 1e-14);
+}
+
 /// An interference that only a gap far beyond reach could call rounding is none.
 #[test]
 fn a_small_interference_beside_a_gap_that_never_closes_is_kept() {
