@@ -55,22 +55,6 @@ impl Metric {
         holds: &dyn Fn(usize, usize) -> bool,
         unit: f64,
     ) -> Result<Self> {
-        Self::search(bodies, rows, holds, unit, true)
-    }
-
-    /// With what all rows lead to, however few of them hold an unknown and however large its cluster: the metric of the motion
-    /// that rows demand, which passes from soft unknowns to stiff ones.
-    pub fn of_motion(bodies: &[Metered], rows: [&RowSet; 3], unit: f64) -> Result<Self> {
-        Self::search(bodies, rows, &|_, _| true, unit, false)
-    }
-
-    fn search(
-        bodies: &[Metered],
-        rows: [&RowSet; 3],
-        holds: &dyn Fn(usize, usize) -> bool,
-        unit: f64,
-        is_to_hold: bool,
-    ) -> Result<Self> {
         let n = bodies.last().map_or(0, |(start, k, _)| start + k.order());
         let (mut values, mut stiffness) = (zeros(n, WHAT)?, zeros(n, WHAT)?);
         for (start, k, without) in bodies {
@@ -87,11 +71,9 @@ impl Metric {
                 if found.is_empty() {
                     break;
                 }
-                if is_to_hold {
-                    clusters.keep_whole(&mut found, |j| search.state[j] = State::Own);
-                }
+                clusters.keep_whole(&mut found, |j| search.state[j] = State::Own);
                 found.iter().for_each(|&j| search.state[j] = State::Found);
-                search.carry(found, is_to_hold.then_some(&clusters))?;
+                search.carry(found, &clusters)?;
             }
         }
         let carried: Vec<usize> = (0..n).filter(|&j| search.state[j] == State::Carried).collect();
@@ -150,7 +132,7 @@ impl Search<'_> {
     }
 
     /// Gives these unknowns D~, without those to which their rows give less than `CARRIED` times their stiffness.
-    fn carry(&mut self, mut found: Vec<usize>, clusters: Option<&Clusters>) -> Result<()> {
+    fn carry(&mut self, mut found: Vec<usize>, clusters: &Clusters) -> Result<()> {
         loop {
             let mut given = zeros(self.state.len(), WHAT)?;
             let mut links = Vec::new();
@@ -173,12 +155,9 @@ impl Search<'_> {
             links.iter().for_each(|places| spare[group[places[0]]] += 1);
             group.iter().for_each(|&group| spare[group] -= 1);
             let holds = |j: usize| given[j] > CARRIED * self.stiffness[j] && given[j].is_normal();
-            let enough =
-                found.iter().zip(&group).filter(|(_, group)| clusters.is_none() || spare[**group] >= 0);
+            let enough = found.iter().zip(&group).filter(|(_, group)| spare[**group] >= 0);
             let mut held: Vec<usize> = enough.map(|(j, _)| *j).filter(|j| holds(*j)).collect();
-            if let Some(clusters) = clusters {
-                clusters.keep_whole(&mut held, |_| ());
-            }
+            clusters.keep_whole(&mut held, |_| ());
             if held.len() == found.len() {
                 for j in held {
                     self.stiffness[j] += given[j];
