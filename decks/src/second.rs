@@ -11,9 +11,8 @@ use crate::{Body, Deck};
 
 /// delta and epsilon: K + delta D stays regular in 32 digits, the step is nearly that of Newton.
 const SHIFT: f64 = 1e-11;
-/// A force or a gap below this part of the largest is zero: terms of floating bodies are 1 / delta times others, and are known to
-/// 1e-21.
-const ZERO: f64 = 1e-20;
+/// A force or a gap below this part of the largest is zero.
+const ZERO: f64 = 1e-17;
 /// The error falls by delta times the condition in each step; undetermined motions and forces of rows that agree only to
 /// rounding drift, and need no end.
 const STEPS: usize = 8;
