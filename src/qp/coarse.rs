@@ -248,6 +248,14 @@ impl<'a> AnswerFace<'a> {
         Ok(left)
     }
 
+    /// `G_F'W_F+ e`, the forces of least norm with the resultants e; 0 on the rows that are held.
+    pub fn forces(&mut self, e: &[f64]) -> Result<Vec<f64>> {
+        let mut x = vec![0.0; self.held.len()];
+        self.coarse.g_transposed.mul(&self.coarse.on(self.held)?.solve(e)?, &mut x);
+        x.iter_mut().zip(self.held).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
+        Ok(x)
+    }
+
     /// `argmin |r_F - G_F'alpha|` on the rows that are not held, alpha of minimum norm.
     pub fn fitted(&mut self, r: &[f64]) -> Result<Vec<f64>> {
         Ok(self.coarse.fitted(self.held, r)?.0)

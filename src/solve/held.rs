@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use crate::certificate::Candidate;
+use crate::certificate::{Candidate, NOISE};
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::graph::joined;
+use crate::linalg::random::scattered;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::{Csr, Matrix, Operator};
 use crate::qp::AnswerFace;
@@ -18,8 +19,8 @@ const SMALL: f64 = 1e-6;
 const ROUNDING: f64 = 1e-12;
 const IDLE: f64 = 64.0 * f64::EPSILON;
 
-/// Rows of the dual that hold nothing: groups of contact rows whose forces are all rounding, and tangential rows of nodes
-/// whose friction bound is 0. `load`: loads of all unknowns, force; `coarse`: G'.
+/// Rows of the dual that hold nothing: groups of contact rows whose forces are all rounding, their own or, beside uneven rows, that of
+/// resultants, and tangential rows of nodes whose friction bound is 0. `load`: loads of all unknowns, force; `coarse`: G'.
 pub fn without_force(ready: &Ready, coarse: &Csr, load: &[f64], answer: Candidate) -> Result<Vec<bool>> {
     let (lambda, rows, island) = (answer.lambda, &ready.rows, &ready.island);
     let mut push = vec![0.0; load.len()];
@@ -64,16 +65,31 @@ pub fn without_force(ready: &Ready, coarse: &Csr, load: &[f64], answer: Candidat
     for (i, (group, _)) in rows.scaling.grouping.members().filter(|(i, _)| *i < rows.contact) {
         carries[group] |= lambda[i] > 0.0 && small[group];
     }
+    let (dual, unit) = (&ready.dual, island.unit);
+    let load: Vec<f64> = load.iter().map(|f| f / unit).collect();
+    push.iter_mut().for_each(|push| *push /= unit);
+    let [own, by_rows] = [&load, &push].map(|f| dual.sizes_of_loads(f, &rows.metric));
+    let terms: Vec<f64> = own.iter().zip(by_rows).map(|(own, by_rows)| own + by_rows).collect();
     if carries.contains(&true) {
-        let (dual, unit) = (&ready.dual, island.unit);
         let free = AnswerFace::new(coarse, &dual.blocks, &small, dual.rounding())?.undetermined()?;
-        let load: Vec<f64> = load.iter().map(|f| f / unit).collect();
-        push.iter_mut().for_each(|push| *push /= unit);
-        let [own, by_rows] = [&load, &push].map(|f| dual.sizes_of_loads(f, &rows.metric));
-        let terms: Vec<f64> = own.iter().zip(by_rows).map(|(own, by_rows)| own + by_rows).collect();
         judge(&mut held, &carries, coarse, &free, (&dual.resultants(&load), &terms), dual.rounding());
     }
+    if rows.uneven {
+        let noise = rounding_of(&terms);
+        let shaken = AnswerFace::new(coarse, &dual.blocks, &held, dual.rounding())?.forces(&noise)?;
+        let is_bounded = |group| rows.kind(group) == RowKind::Inequality;
+        let mut none: Vec<bool> = (0..rows.groups()).map(is_bounded).collect();
+        for (i, (group, _)) in rows.scaling.grouping.members().filter(|(i, _)| *i < rows.contact) {
+            none[group] &= lambda[i] <= rows.scaling.force_of(group, i) * shaken[group].abs();
+        }
+        held.iter_mut().zip(none).for_each(|(held, none)| *held |= none);
+    }
     Ok(held)
+}
+
+/// Rounding of resultants with these terms: that of a heavy body may lie on a light one as a force of its rows.
+fn rounding_of(terms: &[f64]) -> Vec<f64> {
+    scattered(terms.len()).iter().zip(terms).map(|(sign, term)| sign.signum() * NOISE * term).collect()
 }
 
 /// Rows with small forces hold nothing if the loads do no work, up to rounding, along the free motions that they and others with

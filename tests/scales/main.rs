@@ -7,6 +7,7 @@
 //! | [`beams`] | long beams on springs that only push and on rigid beds |
 //! | [`far`] | a row whose gap is never closed |
 //! | [`presolve`] | rows that contradict each other beside one that is far away |
+//! | [`heavy`] | a heavy body whose loads cancel beside a light one |
 //! | [`long`] | rows over all unknowns of a large body |
 //! | [`loose`] | towers, walls and heaps of many loose bodies |
 //! | [`groups`] | groups of bodies that no row joins |
@@ -24,6 +25,7 @@ mod free;
 mod groups;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
+mod heavy;
 mod long;
 mod loose;
 mod mixed;
