@@ -11,8 +11,10 @@ use crate::{Body, Deck};
 
 /// delta and epsilon: K + delta D stays regular in 32 digits, the step is nearly that of Newton.
 const SHIFT: f64 = 1e-11;
-/// A force or a gap below this part of the largest is zero.
+/// A force below this part of the largest is zero, and so is a gap below this part of the motions along its row.
 const ZERO: f64 = 1e-17;
+/// A sum of these terms is known to this part of the largest.
+const ROUNDING: f64 = 1e-28;
 /// The error falls by delta times the condition in each step; undetermined motions and forces of rows that agree only to
 /// rounding drift, and need no end.
 const STEPS: usize = 8;
@@ -172,12 +174,18 @@ impl<'a> Second<'a> {
                 dot(&self.columns[i], &rest) - gap + Dd::from(self.shift[i]) * forces[i]
             })
             .collect();
-        let forces = self.pivot(&d, closed)?;
-        for (column, &force) in self.columns.iter().zip(&forces) {
-            rest.iter_mut().zip(column).for_each(|(rest, y)| *rest = *rest - *y * force);
+        let forces = self.pivot(&d, &rest, closed)?;
+        Some((self.displacement(&rest, &forces), forces))
+    }
+
+    /// u for these forces; `loads`: L^-1 of those without them.
+    fn displacement(&self, loads: &[Dd], forces: &[Dd]) -> Vec<Dd> {
+        let mut u = loads.to_vec();
+        for (column, &force) in self.columns.iter().zip(forces) {
+            u.iter_mut().zip(column).for_each(|(u, y)| *u = *u - *y * force);
         }
-        self.of_bodies(&mut rest, Cholesky::backward);
-        Some((rest, forces))
+        self.of_bodies(&mut u, Cholesky::backward);
+        u
     }
 
     /// delta |u - v|_D <= 1e-10 |f|_{D^-1} on every body that has a load.
@@ -192,11 +200,11 @@ impl<'a> Second<'a> {
     }
 
     /// Principal pivoting: all wrong rows change sides while their number falls, else the last wrong one (Murty).
-    fn pivot(&self, d: &[Dd], closed: &mut [bool]) -> Option<Vec<Dd>> {
+    fn pivot(&self, d: &[Dd], loads: &[Dd], closed: &mut [bool]) -> Option<Vec<Dd>> {
         let (mut fewest, mut patience) = (usize::MAX, 8);
         for _ in 0..PIVOTS {
             let forces = self.forces(d, closed)?;
-            let wrong = self.wrong(d, closed, &forces);
+            let wrong = self.wrong(d, &self.displacement(loads, &forces), closed, &forces);
             if wrong.is_empty() {
                 return Some(forces);
             }
@@ -222,8 +230,9 @@ impl<'a> Second<'a> {
         Some(forces)
     }
 
-    /// Closed rows that pull, open rows that penetrate.
-    fn wrong(&self, d: &[Dd], closed: &[bool], forces: &[Dd]) -> Vec<usize> {
+    /// Closed rows that pull, open rows that penetrate. The terms of a gap are those of u: along floating bodies those of forces are
+    /// larger by 1 / delta.
+    fn wrong(&self, d: &[Dd], u: &[Dd], closed: &[bool], forces: &[Dd]) -> Vec<usize> {
         let m = closed.len();
         let is_wrong = |&i: &usize| {
             let row = &self.matrix[i * m..(i + 1) * m];
@@ -232,7 +241,9 @@ impl<'a> Second<'a> {
             if closed[i] {
                 (forces[i] * row[i]).value() < -ZERO * size
             } else {
-                (dot(row, forces) - d[i]).value() < -ZERO * size
+                let along = self.rows[i].iter().map(|&(j, v)| (v * u[j].value()).abs());
+                let own = along.fold(self.gaps[i].abs(), f64::max);
+                (dot(row, forces) - d[i]).value() < -(ZERO * own).max(ROUNDING * size)
             }
         };
         (0..self.contact).filter(is_wrong).collect()

@@ -89,12 +89,12 @@ const ONCE_WRONG: [u64; 34] = [
 /// stiffness rows hid, an answer that far travel had spoilt, and glue of a soft body to a stiff one; beside carried unknowns then
 /// forces that cancelled between rows of glue, supports that counted as moved, and travel that counted as deformation; then lengths of
 /// springs that counted as rounding of the problem, and rows that far travel had left open; then rounding of a heavy body that rows of a
-/// light one carried.
-const ONCE_WRONG_OF_SECOND: [u64; 33] = [
+/// light one carried, and gaps that the second solver took for zero.
+const ONCE_WRONG_OF_SECOND: [u64; 35] = [
     5000276, 5000444, 5000614, 5001251, 5001263, 5001695, 5001747, 6000032, 6000278, 6001812, 7006560,
     132041240, 132048217, 132049747, 132002388, 132027536, 132004244, 132037661, 132045847, 141009093,
     141029846, 141039825, 202006118, 202018794, 210003758, 195019307, 195023733, 220004404, 210002267,
-    230010389, 202006930, 215020688, 230017491,
+    230010389, 202006930, 215020688, 230017491, 196010146, 220016557,
 ];
 
 #[test]
