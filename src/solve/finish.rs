@@ -135,16 +135,16 @@ impl<'a> Finish<'a, '_> {
         while sets.go_on_with(&active) {
             let Some(undetermined) = self.on_face(&mut point, &active, dense)? else { break };
             self.ending.solution.counts.direct += 1;
+            let next = point.active(self.recovery);
+            self.keep(&point, undetermined, if next == active { is_no_worse } else { is_better })?;
             if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
                 break;
             }
-            let next = point.active(self.recovery);
             if next != active {
                 active = sets.after(&active, next);
             } else if let Some(start) = start.take_if(|_| !self.passes() && Rung::SparseFaces.is_tried()) {
                 (dense, point, sets) = (0, start, Pivots::default());
             } else {
-                self.keep(&point, undetermined, is_no_worse)?;
                 break;
             }
         }
@@ -194,14 +194,12 @@ impl<'a> Finish<'a, '_> {
         Ok(())
     }
 
-    /// Corrections on one face while each is less than half the previous one; every intermediate answer that is no worse
-    /// replaces the current one.
-    fn correct(&mut self, point: &mut SplitPoint, face: FaceSolver) -> Result<()> {
-        let (mut last, undetermined) = (f64::INFINITY, face.undetermined());
+    /// Corrections on one face while each is less than half the previous one.
+    fn correct(&self, point: &mut SplitPoint, face: FaceSolver) -> Result<()> {
+        let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             interrupt::check()?;
             let size = point.correct(self.recovery, &self.negative, face)?;
-            self.keep(point, undetermined, is_better)?;
             if size >= 0.5 * last {
                 break;
             }
@@ -293,6 +291,7 @@ mod tests {
                     done: Finished::default(),
                 };
                 finish.correct(&mut point, FaceSolver::Dense(&face)).unwrap();
+                finish.keep(&point, 0, is_better).unwrap();
                 assert_eq!(finish.done.replaced, right, "{rows:?}");
                 assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");
                 assert_eq!(point.active(recovery), [false, true], "{rows:?}");

@@ -19,15 +19,6 @@ pub enum FaceSolver<'a> {
     Sparse(&'a SparseFace<'a>),
 }
 
-impl FaceSolver<'_> {
-    pub fn undetermined(&self) -> usize {
-        match self {
-            Self::Dense(feedback) => feedback.face.undetermined(),
-            Self::Sparse(face) => face.undetermined(),
-        }
-    }
-}
-
 /// Forces x and amplitudes alpha with u = v + w: w are motions that K does not resist; in a sum with large w, v would
 /// lose its digits. v, w and x are in two doubles: where loads and forces nearly cancel, rounding of x would move v.
 #[derive(Clone)]
