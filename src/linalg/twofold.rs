@@ -9,6 +9,7 @@ pub struct Twofold {
 }
 
 impl Twofold {
+    #[inline(always)]
     pub fn add(&mut self, a: f64) {
         let sum = self.sum + a;
         let taken = sum - self.sum;
@@ -16,6 +17,7 @@ impl Twofold {
         self.sum = sum;
     }
 
+    #[inline(always)]
     pub fn add_product(&mut self, a: f64, b: f64) {
         let product = a * b;
         self.add(product);
