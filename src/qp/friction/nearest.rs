@@ -68,7 +68,7 @@ impl Target<'_> {
             if error == 0.0 || endless || !now.phi.is_finite() {
                 break;
             }
-            let is_last = error <= ACCURACY * scale;
+            let is_last = error <= (ACCURACY * scale).max(self.rounding(&now));
             let Some(direction) = self.direction(&now, if is_last { ROUNDING } else { shift })? else {
                 break;
             };
@@ -86,6 +86,19 @@ impl Target<'_> {
         }
         let met = scale.is_finite() && norm(&now.left) <= ACCEPTED * scale;
         Ok(Projected { met, ..if met { now } else { closest } })
+    }
+
+    /// Of `G PI(v)` by that of `v = y + G'beta`, where delta makes beta large: the smaller delta, the larger is beta.
+    fn rounding(&self, now: &Projected) -> f64 {
+        if self.delta == 0.0 {
+            return 0.0;
+        }
+        let rows = self.qp.g_transposed;
+        let of_row = |(i, x): (usize, &f64)| if *x == 0.0 { 0.0 } else { rows.row_dot_abs(i, &now.beta) };
+        let sizes: Vec<f64> = now.point.iter().enumerate().map(of_row).collect();
+        let mut terms = vec![0.0; self.qp.e.len()];
+        rows.mul_transposed_abs_add(&sizes, &mut terms);
+        f64::EPSILON * norm(&terms)
     }
 
     fn direction(&self, now: &Projected, shift: f64) -> Result<Option<Vec<f64>>> {
