@@ -119,6 +119,11 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         // bodies would enter one row after the other from 0
         let leaves = |i: usize| now.point[i] <= 0.0 && (step > 0 || y[i] < 0.0);
         let face: Vec<bool> = (0..y.len()).map(|i| held[i] || (qp.bounded[i] && leaves(i))).collect();
+        let mut free = vec![0.0; qp.e.len()];
+        coarse.on(&face)?.add_free_part(qp.e, &mut free);
+        if norm(&free) > MET * given && target.is_endless_along(coarse, &free) {
+            return Ok(None);
+        }
         let mut on_face = coarse.on(&face)?;
         let direction = match face == held {
             true => on_face.solve(&now.residual)?,
@@ -145,6 +150,16 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
 }
 
 impl Target<'_> {
+    /// J3: no row resists this motion, along which phi then decreases without end: it is the part of e along free motions of a face.
+    fn is_endless_along(&self, coarse: &Coarse, motion: &[f64]) -> bool {
+        let Target { qp, held, .. } = self;
+        let (rows, noise) = (coarse.rows(), qp.rounding * coarse.largest().sqrt() * norm(motion));
+        (0..held.len()).filter(|&i| !held[i]).all(|i| {
+            let q = rows.row_dot(i, motion);
+            q <= noise && (qp.bounded[i] || q >= -noise)
+        })
+    }
+
     /// J3: exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and nondecreasing, with the slope
     /// `sum (G'step)_i^2` over the rows that are not at their bound. `None`: phi decreases without end.
     fn minimum_along(&self, coarse: &Coarse, now: &Trial, step: &[f64]) -> Option<f64> {
@@ -214,5 +229,29 @@ mod tests {
         }
         let outside = Qp { e: &[-1.0], ..qp };
         assert!(project(&outside, &mut coarse, &[0.8, 0.6, -1.0], &[false; 3]).unwrap().is_none());
+    }
+
+    /// Rows resist the second mode by the rounding of their data alone.
+    #[test]
+    fn a_load_along_a_motion_that_no_row_resists_ends_after_one_face() {
+        let mut g_transposed = Csr::empty(2);
+        for tilt in [0.3, -0.2, 0.7, 0.1] {
+            g_transposed.push_row([(0, 1.0), (1, 1e-17 * tilt)]);
+        }
+        let a = Packed::zeros(4).unwrap();
+        let qp = Qp {
+            a: &a,
+            b: &[0.0; 4],
+            g_transposed: &g_transposed,
+            blocks: &[0, 1],
+            rounding: 1e-14,
+            e: &[-1.0, 1.0],
+            bounded: &[false, false, true, true],
+            preconditioner: None,
+            kept: None,
+        };
+        let mut coarse = Coarse::of(&qp).unwrap();
+        assert!(project(&qp, &mut coarse, &[0.0; 4], &[false; 4]).unwrap().is_none());
+        assert_eq!(coarse.factorisations, 1);
     }
 }

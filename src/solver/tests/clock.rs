@@ -150,7 +150,7 @@ fn parts_that_take_long_say_how_far_they_are_and_the_longer_they_take_the_more_s
         (masonry::wall(4, 1e-4), "first feasible point", "Newton steps of a projection"),
         (masonry::wall(4, 1e-4), "dual solve", "Newton steps of a projection"),
         (masonry::heap(60, 3), "dual solve", "steps into the interior"),
-        (pushed_aside(masonry::wall(3, 0.0)), "first feasible point", "steps into the interior"),
+        (masonry::heap(200, 3), "first feasible point", "steps into the interior"),
         (pushed_aside(masonry::wall(6, 0.0)), "first feasible point", "rows admitted to a nearest point"),
         (
             pushed_aside(masonry::wall(3, 0.0)),
