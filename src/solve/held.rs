@@ -65,12 +65,16 @@ pub fn without_force(ready: &Ready, coarse: &Csr, load: &[f64], answer: Candidat
     for (i, (group, _)) in rows.scaling.grouping.members().filter(|(i, _)| *i < rows.contact) {
         carries[group] |= lambda[i] > 0.0 && small[group];
     }
+    let is_carried = carries.contains(&true);
+    if !is_carried && !rows.uneven {
+        return Ok(held);
+    }
     let (dual, unit) = (&ready.dual, island.unit);
     let load: Vec<f64> = load.iter().map(|f| f / unit).collect();
     push.iter_mut().for_each(|push| *push /= unit);
     let [own, by_rows] = [&load, &push].map(|f| dual.sizes_of_loads(f, &rows.metric));
     let terms: Vec<f64> = own.iter().zip(by_rows).map(|(own, by_rows)| own + by_rows).collect();
-    if carries.contains(&true) {
+    if is_carried {
         let free = AnswerFace::new(coarse, &dual.blocks, &small, dual.rounding())?.undetermined()?;
         judge(&mut held, &carries, coarse, &free, (&dual.resultants(&load), &terms), dual.rounding());
     }

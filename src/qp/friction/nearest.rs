@@ -88,7 +88,8 @@ impl Target<'_> {
         Ok(Projected { met, ..if met { now } else { closest } })
     }
 
-    /// Of `G PI(v)` by that of `v = y + G'beta`, where delta makes beta large: the smaller delta, the larger is beta.
+    /// Of `G PI(v)` by that of `v = y + G'beta`, where delta makes beta large: the smaller delta, the larger is beta. Without delta many
+    /// bodies on top of each other make beta large, too, but the residual still falls far below this bound.
     fn rounding(&self, now: &Projected) -> f64 {
         if self.delta == 0.0 {
             return 0.0;
