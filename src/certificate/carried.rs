@@ -42,8 +42,6 @@ enum State {
     /// Held by rows better than by K, if its rows confirm it.
     Found,
     Carried,
-    /// It deforms with its cluster, or what seems to hold it is not much stiffer.
-    Own,
 }
 
 impl Metric {
@@ -68,12 +66,10 @@ impl Metric {
             let clusters = Clusters::of(bodies, n)?;
             loop {
                 let mut found = search.found(|j| clusters.of[j]);
-                if found.is_empty() {
+                clusters.keep_whole(&mut found);
+                if !search.carry(found, &clusters)? {
                     break;
                 }
-                clusters.keep_whole(&mut found, |j| search.state[j] = State::Own);
-                found.iter().for_each(|&j| search.state[j] = State::Found);
-                search.carry(found, &clusters)?;
             }
         }
         let carried: Vec<usize> = (0..n).filter(|&j| search.state[j] == State::Carried).collect();
@@ -131,9 +127,14 @@ impl Search<'_> {
         found
     }
 
+    fn mark(&mut self, found: &[usize], state: State) {
+        found.iter().for_each(|&j| self.state[j] = state);
+    }
+
     /// Gives these unknowns D~, without those to which their rows give less than `CARRIED` times their stiffness.
-    fn carry(&mut self, mut found: Vec<usize>, clusters: &Clusters) -> Result<()> {
+    fn carry(&mut self, mut found: Vec<usize>, clusters: &Clusters) -> Result<bool> {
         loop {
+            self.mark(&found, State::Found);
             let mut given = zeros(self.state.len(), WHAT)?;
             let mut links = Vec::new();
             self.each_row(|row, compliance| {
@@ -157,16 +158,13 @@ impl Search<'_> {
             let holds = |j: usize| given[j] > CARRIED * self.stiffness[j] && given[j].is_normal();
             let enough = found.iter().zip(&group).filter(|(_, group)| spare[**group] >= 0);
             let mut held: Vec<usize> = enough.map(|(j, _)| *j).filter(|j| holds(*j)).collect();
-            clusters.keep_whole(&mut held, |_| ());
+            clusters.keep_whole(&mut held);
+            self.mark(&found, State::Open);
             if held.len() == found.len() {
-                for j in held {
-                    self.stiffness[j] += given[j];
-                    self.state[j] = State::Carried;
-                }
-                return Ok(());
+                held.iter().for_each(|&j| self.stiffness[j] += given[j]);
+                self.mark(&held, State::Carried);
+                return Ok(!held.is_empty());
             }
-            found.iter().for_each(|&j| self.state[j] = State::Own);
-            held.iter().for_each(|&j| self.state[j] = State::Found);
             found = held;
         }
     }
@@ -201,16 +199,14 @@ impl Clusters {
         Ok(Self { of, sizes })
     }
 
-    /// Keeps the unknowns of small clusters all of which are among these, and tells the others.
-    fn keep_whole(&self, found: &mut Vec<usize>, mut lose: impl FnMut(usize)) {
+    /// Keeps the unknowns of small clusters all of which are among these.
+    fn keep_whole(&self, found: &mut Vec<usize>) {
         let mut counts = HashMap::new();
         found.iter().for_each(|&j| *counts.entry(self.of[j]).or_insert(0) += 1);
-        let is_whole = |j: usize| {
+        found.retain(|&j| {
             let size = self.sizes[self.of[j]];
             size <= CLUSTER && counts.get(&self.of[j]) == Some(&size)
-        };
-        found.iter().filter(|j| !is_whole(**j)).for_each(|j| lose(*j));
-        found.retain(|j| is_whole(*j));
+        });
     }
 }
 
@@ -260,6 +256,14 @@ mod tests {
         let of = metric(&[2.0, 1e-9, 1e-9, 1e-9], &[&link(0, 1), &link(1, 2), &link(2, 3)]);
         assert_eq!(of.carried, [1, 2, 3]);
         assert!(of.values.iter().all(|d| (d - 2.0).abs() < 1e-8), "{:?}", of.values);
+    }
+
+    #[test]
+    fn so_is_a_chain_that_becomes_softer_and_softer() {
+        let link = |a: usize, b: usize| [(a, 1.0), (b, -1.0)];
+        let of = metric(&[2.0, 1e-6, 1e-9, 1e-12], &[&link(0, 1), &link(1, 2), &link(2, 3)]);
+        assert_eq!(of.carried, [1, 2, 3]);
+        assert!(of.values.iter().all(|d| (d - 2.0).abs() < 1e-5), "{:?}", of.values);
     }
 
     /// A displacement and a rotation of one node, in one row each with two springs.
