@@ -53,29 +53,40 @@ impl Metric {
         holds: &dyn Fn(usize, usize) -> bool,
         unit: f64,
     ) -> Result<Self> {
-        let n = bodies.last().map_or(0, |(start, k, _)| start + k.order());
-        let (mut values, mut stiffness) = (zeros(n, WHAT)?, zeros(n, WHAT)?);
-        for (start, k, without) in bodies {
-            for i in 0..k.order() {
-                values[start + i] = k.metric(i, *without) / unit;
-                stiffness[start + i] = k.metric(i, 0.0) / unit;
-            }
-        }
-        let mut search = Search { rows, holds, unit, stiffness, state: filled(n, State::Open, WHAT)? };
-        if !search.found(|j| j).is_empty() {
-            let clusters = Clusters::of(bodies, n)?;
-            loop {
-                let mut found = search.found(|j| clusters.of[j]);
-                clusters.keep_whole(&mut found);
-                if !search.carry(found, &clusters)? {
-                    break;
-                }
-            }
-        }
-        let carried: Vec<usize> = (0..n).filter(|&j| search.state[j] == State::Carried).collect();
+        let (mut values, mut search) = Search::new(bodies, rows, holds, unit)?;
+        search.outward(bodies, |search, mut found, clusters| {
+            clusters.keep_whole(&mut found);
+            search.carry(found, clusters)
+        })?;
+        let carried: Vec<usize> = (0..values.len()).filter(|&j| search.state[j] == State::Carried).collect();
         carried.iter().for_each(|&j| values[j] = search.stiffness[j]);
         Ok(Self { values, carried })
     }
+}
+
+/// D^ / unit over all unknowns: D~ with what all rows lead to, however few of them hold an unknown and however large its cluster. It
+/// measures motions that rows pass on from soft unknowns to stiff ones, and the rounding of forces that cancel between rows. A row
+/// gives no more than the stiffest unknown to which it leads: an entry that is nearly 0 is no lever.
+pub fn led(
+    bodies: &[Metered],
+    rows: [&RowSet; 3],
+    holds: &dyn Fn(usize, usize) -> bool,
+    unit: f64,
+) -> Result<Vec<f64>> {
+    let (mut values, mut search) = Search::new(bodies, rows, holds, unit)?;
+    search.outward(bodies, |search, found, _| {
+        search.mark(&found, State::Found);
+        let mut given = zeros(values.len(), WHAT)?;
+        search.each_link(|row, yielding, stiffest| {
+            row.iter().for_each(|(j, square, _)| given[*j] += (square / yielding).min(stiffest));
+        });
+        search.mark(&found, State::Open);
+        let led: Vec<usize> = found.into_iter().filter(|j| given[*j] > 0.0).collect();
+        search.hold(&led, &given);
+        led.iter().for_each(|&j| values[j] = search.stiffness[j]);
+        Ok(!led.is_empty())
+    })?;
+    Ok(values)
 }
 
 struct Search<'a> {
@@ -87,7 +98,48 @@ struct Search<'a> {
     state: Vec<State>,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    /// D / unit, and the search before its first step.
+    fn new(
+        bodies: &[Metered],
+        rows: [&'a RowSet; 3],
+        holds: &'a dyn Fn(usize, usize) -> bool,
+        unit: f64,
+    ) -> Result<(Vec<f64>, Self)> {
+        let n = bodies.last().map_or(0, |(start, k, _)| start + k.order());
+        let (mut values, mut stiffness) = (zeros(n, WHAT)?, zeros(n, WHAT)?);
+        for (start, k, without) in bodies {
+            for i in 0..k.order() {
+                values[start + i] = k.metric(i, *without) / unit;
+                stiffness[start + i] = k.metric(i, 0.0) / unit;
+            }
+        }
+        Ok((values, Self { rows, holds, unit, stiffness, state: filled(n, State::Open, WHAT)? }))
+    }
+
+    /// From the stiffest outward: `carry` is given the unknowns that are found and tells whether it has carried some of them.
+    fn outward(
+        &mut self,
+        bodies: &[Metered],
+        mut carry: impl FnMut(&mut Self, Vec<usize>, &Clusters) -> Result<bool>,
+    ) -> Result<()> {
+        if self.found(|j| j).is_empty() {
+            return Ok(());
+        }
+        let clusters = Clusters::of(bodies, self.state.len())?;
+        while carry(self, self.found(|j| clusters.of[j]), &clusters)? {}
+        Ok(())
+    }
+
+    fn mark(&mut self, found: &[usize], state: State) {
+        found.iter().for_each(|&j| self.state[j] = state);
+    }
+
+    fn hold(&mut self, found: &[usize], given: &[f64]) {
+        found.iter().for_each(|&j| self.stiffness[j] += given[j]);
+        self.mark(found, State::Carried);
+    }
+
     /// Unknown and `b_ij^2 / D~_j` of the entries of every row, and `C_i`, without unit.
     fn each_row(&self, mut visit: impl FnMut(&[(usize, f64, f64)], f64)) {
         let mut row = Vec::new();
@@ -127,8 +179,19 @@ impl Search<'_> {
         found
     }
 
-    fn mark(&mut self, found: &[usize], state: State) {
-        found.iter().for_each(|&j| self.state[j] = state);
+    /// The entries of unknowns that are found, of every row that joins them to others, `sum_l b_il^2 / D~_l + C_i` over these
+    /// others, and the largest D~_l among them. Clusters are found as a whole: what is not found belongs to others.
+    fn each_link(&self, mut visit: impl FnMut(&[(usize, f64, f64)], f64, f64)) {
+        self.each_row(|row, compliance| {
+            let is_found = |entry: &&(usize, f64, f64)| self.state[entry.0] == State::Found;
+            let own: Vec<_> = row.iter().filter(is_found).copied().collect();
+            if own.is_empty() || own.len() == row.len() {
+                return;
+            }
+            let others = || row.iter().filter(|entry| !is_found(entry));
+            let stiffest = others().map(|entry| self.stiffness[entry.0]).fold(0.0, f64::max);
+            visit(&own, others().fold(compliance, |sum, entry| sum + entry.2), stiffest);
+        });
     }
 
     /// Gives these unknowns D~, without those to which their rows give less than `CARRIED` times their stiffness.
@@ -137,18 +200,10 @@ impl Search<'_> {
             self.mark(&found, State::Found);
             let mut given = zeros(self.state.len(), WHAT)?;
             let mut links = Vec::new();
-            self.each_row(|row, compliance| {
-                // clusters are found as a whole: what is not found belongs to others
-                let is_found = |entry: &&(usize, f64, f64)| self.state[entry.0] == State::Found;
-                let others = row.iter().filter(|entry| !is_found(entry));
-                let (count, yielding) =
-                    others.fold((0, compliance), |(count, sum), entry| (count + 1, sum + entry.2));
-                if count > 0 {
-                    row.iter().filter(is_found).for_each(|(j, square, _)| given[*j] += square / yielding);
-                    let places = row.iter().filter_map(|entry| found.binary_search(&entry.0).ok());
-                    let places: Vec<usize> = places.collect();
-                    links.extend((!places.is_empty()).then_some(places));
-                }
+            self.each_link(|row, yielding, _| {
+                row.iter().for_each(|(j, square, _)| given[*j] += square / yielding);
+                let places = row.iter().filter_map(|entry| found.binary_search(&entry.0).ok());
+                links.push(places.collect::<Vec<usize>>());
             });
             // fewer rows than unknowns leave some of their motions to K
             let (group, count) = joined(found.len(), links.iter().map(|places| places.iter().copied()));
@@ -161,8 +216,7 @@ impl Search<'_> {
             clusters.keep_whole(&mut held);
             self.mark(&found, State::Open);
             if held.len() == found.len() {
-                held.iter().for_each(|&j| self.stiffness[j] += given[j]);
-                self.mark(&held, State::Carried);
+                self.hold(&held, &given);
                 return Ok(!held.is_empty());
             }
             found = held;

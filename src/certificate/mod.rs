@@ -27,7 +27,7 @@ use crate::error::Result;
 use crate::linalg::Matrix;
 
 pub use crate::linalg::vector::NOISE;
-pub use carried::Metric;
+pub use carried::{led, Metric};
 use deformation::Deformation;
 use energy::Energies;
 pub use entry::{Certificate, Entry};

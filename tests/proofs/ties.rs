@@ -74,6 +74,21 @@ fn ties_that_only_a_displacement_a_million_times_as_large_satisfies_contradict_e
     }
 }
 
+/// A soft strip of more unknowns than a node, whose end is moved by 1, moves a spring 1e14 times as stiff: what counts as motion
+/// that rows demand is that of the spring.
+#[test]
+fn a_motion_that_soft_unknowns_pass_on_to_stiff_ones_contradicts_nothing() {
+    for soft in [1e-2, 1e-6, 1e-8] {
+        let n = 7;
+        let between: Vec<_> = (1..n).map(|i| (i - 1, i, soft)).collect();
+        let strip = body(springs(n, &between, &[(0, soft), (n - 1, soft)]), vec![], vec![0.0; n]);
+        let spring = body(springs(1, &[], &[(0, 1e6)]), vec![], vec![0.0]);
+        let deck = deck(vec![spring, strip], &[], &[(&[(1, 1.0)], 1.0), (&[(1, 1.0), (0, -1.0)], 0.0)]);
+        let mut problem = hand_over::problem(&deck).unwrap();
+        problem.solve().unwrap_or_else(|error| panic!("{soft:e}: {error}"));
+    }
+}
+
 /// Without any length rounding and a true contradiction look alike.
 #[test]
 fn a_row_without_entries_in_a_problem_without_length_is_refused_with_what_would_decide() {

@@ -1,12 +1,13 @@
 //! Rows whose gaps no displacement satisfies: combinations of rows are tested on the data of the host.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
 
-use crate::certificate::NOISE;
+use crate::certificate::{led, NOISE};
+use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{norm, norm_max, weighted_norm};
+use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
 use crate::linalg::Csr;
 use crate::model::{contradiction, proof_of_rows};
 use crate::qp::{nearest_point, Polyhedron};
@@ -32,6 +33,7 @@ pub struct Contradictions<'a> {
     gaps: &'a Gaps,
     /// V of the loads, force x length, if already computed.
     work: Cell<Option<f64>>,
+    metric: OnceCell<Vec<f64>>,
 }
 
 /// Groups of rows that may contradict each other.
@@ -43,7 +45,7 @@ pub struct Among {
 
 impl<'a> Contradictions<'a> {
     pub fn new(case: Case<'a>, gaps: &'a Gaps) -> Self {
-        Self { case, gaps, work: Cell::new(None) }
+        Self { case, gaps, work: Cell::new(None), metric: OnceCell::new() }
     }
 
     /// The error that names contradictory rows, if a combination w of the groups of the dual, or a search among its rows,
@@ -93,7 +95,7 @@ impl<'a> Contradictions<'a> {
         };
         let of_rows = |w: Vec<(usize, f64)>| w.into_iter().map(|(k, w)| (of[k].0, of[k].1 * w)).collect();
         // the forces l of the nearest point u prove its distance best: B'l = -u, c'l = -|u|^2
-        let far = norm(&found.point) > BEYOND * self.demand();
+        let far = norm(&found.point) > BEYOND * self.demand()?;
         let forces = found.forces.into_iter().enumerate().filter(|(_, force)| *force > 0.0);
         let forces = far.then(|| forces.collect());
         let mut proofs = found.contradictions.into_iter().chain(forces).map(|w| self.proof(of_rows(w)));
@@ -122,7 +124,7 @@ impl<'a> Contradictions<'a> {
         }
         let unknowns = rows.scaled.cols;
         let (mut left, mut terms) = (vec![Twofold::default(); unknowns], vec![0.0; unknowns]);
-        let (mut demanded, mut demands) = (Twofold::default(), 0.0);
+        let (mut demanded, mut demands, mut taken) = (Twofold::default(), 0.0, 0.0);
         for &(i, w) in &weights {
             let (set, k) = self.case.ready.island.row(i);
             let weight = w * rows.scaling.scale[i];
@@ -132,14 +134,17 @@ impl<'a> Contradictions<'a> {
             }
             demanded.add_product(weight, set.rhs[k]);
             demands += (weight * set.rhs[k]).abs();
+            taken += (weight * set.rounding(k)).abs();
         }
         let left: Vec<f64> = left.into_iter().map(Twofold::value).collect();
-        let size = |x: &[f64]| weighted_norm(x, |j| 1.0 / rows.metric[j]);
-        let (left, terms, excess) = (size(&left), size(&terms), -demanded.value());
-        let proves =
-            |moved: f64| excess > BEYOND * moved * left + NOISE * (demands + TRAVELLED * moved * terms);
+        let metric = self.metric()?;
+        let size = |x: &[f64]| weighted_norm(x, |j| 1.0 / metric[j]);
+        let (left, terms, excess) = (size(&left), size(&terms), -demanded.value() - taken);
+        let proves = |moved: f64| {
+            excess > BEYOND * moved * left + NOISE * (demands + taken + TRAVELLED * moved * terms)
+        };
         // the motion caused by the loads costs a product with K+
-        let proved = proves(self.demand()) && proves(self.moved()?);
+        let proved = proves(self.demand()?) && proves(self.moved()?);
         Ok(proved.then(|| self.named(&weights, excess, demands)))
     }
 
@@ -153,20 +158,30 @@ impl<'a> Contradictions<'a> {
         Ok((work / self.case.ready.island.unit).sqrt())
     }
 
-    /// |S c_-, S_H h|: the motion that the rows demand, a length.
-    fn demand(&self) -> f64 {
-        let rows = &self.case.ready.rows;
+    /// D^ of all rows, over U.
+    fn metric(&self) -> Result<&[f64]> {
+        if let Some(metric) = self.metric.get() {
+            return Ok(metric);
+        }
+        let data = self.case.data()?;
+        let bodies: Vec<_> = data.bodies.iter().map(|body| (body.start, body.stiffness, body.unit)).collect();
+        let rows = RowKind::ALL.map(|kind| data.rows(kind));
+        let metric = led(&bodies, rows, &|_, _| true, self.case.ready.island.unit)?;
+        Ok(self.metric.get_or_init(|| metric))
+    }
+
+    /// `|S c_-, S_H h|`: the motion that the rows demand, a length.
+    fn demand(&self) -> Result<f64> {
+        let (ready, metric) = (self.case.ready, self.metric()?);
         let of = |i: usize| {
-            let (set, k) = self.case.ready.island.row(i);
-            let c = rows.scaling.scale[i] * set.rhs[k];
-            if i < rows.contact {
-                c.min(0.0)
-            } else {
-                c
-            }
+            let (set, k) = ready.island.row(i);
+            let c = if i < ready.rows.contact { (-set.rhs[k]).max(0.0) } else { set.rhs[k].abs() };
+            let yields = |(j, b): (usize, f64)| b * b / metric[j];
+            let all = set.matrix.row(k).map(yields).sum::<f64>() + ready.island.unit * set.compliance[k];
+            ratio(c + set.rounding(k), all.sqrt())
         };
-        let all: Vec<f64> = (0..rows.scaling.scale.len()).map(of).collect();
-        weighted_norm(&all, |_| 1.0)
+        let all: Vec<f64> = (0..ready.rows.scaling.scale.len()).map(of).collect();
+        Ok(weighted_norm(&all, |_| 1.0))
     }
 
     fn named(&self, weights: &[(usize, f64)], excess: f64, demands: f64) -> Error {
