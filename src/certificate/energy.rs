@@ -41,7 +41,7 @@ impl Energies {
         let loads: Vec<f64> = range.map(|j| field.load(p, j)).collect();
         self.work += Twofold::dot(&loads, u);
         self.terms += u.iter().zip(terms).zip(&given).map(|((u, t), g)| u.abs() * (t + g)).sum::<f64>();
-        let size = field.size(p, &given);
+        let size = field.led_size(p, &given);
         self.forces += size * (size / field.unit);
         self.acting |= size > 0.0;
     }

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use crate::body::Stiffness;
-use crate::certificate::carried::Metric;
+use crate::certificate::carried::{led, Metric};
 use crate::certificate::{BodyData, Candidate, Data, NOISE};
 use crate::constraints::{row_scales, RowKind, RowSet};
 use crate::error::Result;
@@ -19,6 +19,8 @@ pub(super) struct Field<'a> {
     pub unit: f64,
     /// D~ / U, n, no unit.
     pub metric: Vec<f64>,
+    /// D^ / U, n, no unit: in it forces that cancel move an unknown by their rounding.
+    pub led: Vec<f64>,
     /// Carried unknowns, n.
     pub carried: Vec<bool>,
     /// R of every body, and the unit with `R'D~R = unit`, force / length.
@@ -44,8 +46,9 @@ impl<'a> Field<'a> {
         let unit = power_of_two_below(metered.iter().map(stiffest).fold(0.0, f64::max));
         let forces = RowKind::ALL.map(|kind| answer.forces(kind));
         let holds = |kind: usize, i: usize| kind == RowKind::Equality as usize || forces[kind][i] != 0.0;
-        let Metric { values: metric, carried: places } =
-            Metric::of(&metered, RowKind::ALL.map(|kind| data.rows(kind)), &holds, unit)?;
+        let rows = RowKind::ALL.map(|kind| data.rows(kind));
+        let Metric { values: metric, carried: places } = Metric::of(&metered, rows, &holds, unit)?;
+        let led = led(&metered, rows, &holds, unit)?;
         let mut carried = vec![false; n];
         places.into_iter().for_each(|j| carried[j] = true);
         let motions = data.bodies.iter().map(|body| motions(body, unit, &metric, &carried));
@@ -64,7 +67,7 @@ impl<'a> Field<'a> {
             held.for_each(|j| grounded[body.start + *j as usize] = true);
         }
         let scales = RowKind::ALL.map(|kind| row_scales(data.rows(kind), &metric, unit));
-        Ok(Self { data, answer, unit, metric, carried, motions, grounded, push, push_terms, scales })
+        Ok(Self { data, answer, unit, metric, led, carried, motions, grounded, push, push_terms, scales })
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
@@ -93,14 +96,17 @@ impl<'a> Field<'a> {
         weighted_norm(v, |i| 1.0 / self.metric[start + i])
     }
 
-    /// `b_i D~^-1 b_i' + C_i`, length / force; 0 for a row without scale.
+    /// `|v|_{D^-1}` in D^ over the unknowns of body p, n_p, force.
+    pub fn led_size(&self, p: usize, v: &[f64]) -> f64 {
+        let start = self.data.bodies[p].start;
+        weighted_norm(v, |i| 1.0 / self.led[start + i])
+    }
+
+    /// `b_i D^-1 b_i' + C_i` in D^, length / force.
     pub fn compliance(&self, kind: RowKind, i: usize) -> f64 {
-        let scale = self.scales[kind as usize][i];
-        if scale > 0.0 {
-            1.0 / scale / scale / self.unit
-        } else {
-            0.0
-        }
+        let rows = self.rows(kind);
+        let yields = |(j, b): (usize, f64)| b * b / self.led[j];
+        rows.matrix.row(i).map(yields).sum::<f64>() / self.unit + rows.compliance[i]
     }
 
     /// The bodies that row i touches, ascending.

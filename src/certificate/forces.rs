@@ -22,6 +22,8 @@ pub(super) struct Forces {
     sizes: Vec<Option<f64>>,
     /// `||f| + |B'||lambda| + |H'||mu||_{D^-1}` of every body without its grounded unknowns, force.
     terms: Vec<f64>,
+    /// The same in D^.
+    led: Vec<f64>,
     /// Bodies without load, except on grounded unknowns; a load below 64 eps of the forces of the island is none.
     unloaded: Vec<bool>,
     /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. If there is no such load, the
@@ -38,13 +40,16 @@ pub(super) struct Forces {
 
 impl Forces {
     pub fn new(field: &Field, deformation: &Deformation) -> Self {
-        let (mut sizes, mut terms, mut loads, mut pushes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut sizes, mut terms, mut led) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut loads, mut pushes) = (Vec::new(), Vec::new());
         for p in 0..field.data.bodies.len() {
             let load = field.size(p, &field.free(p, |j| field.load(p, j)));
             let push = field.size(p, &field.free(p, |j| field.push[j]));
             let all = field.range(p).all(|j| field.grounded[j]);
             sizes.push((!all).then_some(load + push));
-            terms.push(field.size(p, &field.free(p, |j| field.load(p, j).abs() + field.push_terms[j])));
+            let given = field.free(p, |j| field.load(p, j).abs() + field.push_terms[j]);
+            terms.push(field.size(p, &given));
+            led.push(field.led_size(p, &given));
             loads.push(load);
             pushes.push(field.size(p, &field.push[field.range(p)]));
         }
@@ -64,6 +69,7 @@ impl Forces {
         Self {
             sizes,
             terms,
+            led,
             unloaded,
             everywhere: forces + moved,
             strains,
@@ -89,7 +95,7 @@ impl Forces {
     pub fn rounding_at(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
         let idle = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0), NOISE);
         let of = |p: usize| {
-            let rounding = NOISE * self.terms[p];
+            let rounding = NOISE * self.led[p];
             idle(p).max(if self.strains[p] <= rounding { rounding } else { 0.0 })
         };
         field.touched(field.rows(kind), i).map(of).fold(0.0, f64::max) / field.unit.sqrt()

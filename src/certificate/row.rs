@@ -35,12 +35,12 @@ impl JudgedRow {
         let empty = rows.matrix.row(i).next().is_none();
         let given_way = if scale > 0.0 { (force.abs() / scale) / scale / field.unit } else { 0.0 };
         // the motion caused there by all forces on its unknowns together: forces that cancel contribute only rounding
-        let moves = |forces: &[f64]| -> f64 {
-            let at = |(j, b): (usize, f64)| (b / field.metric[j] * (forces[j] / field.unit)).abs();
+        let moves = |forces: &[f64], metric: &[f64]| -> f64 {
+            let at = |(j, b): (usize, f64)| (b / metric[j] * (forces[j] / field.unit)).abs();
             rows.matrix.row(i).map(at).sum()
         };
-        let felt = given_way.min(moves(&field.push) + rows.compliance[i] * force.abs());
-        let cancelled = moves(&field.push_terms);
+        let felt = given_way.min(moves(&field.push, &field.metric) + rows.compliance[i] * force.abs());
+        let cancelled = moves(&field.push_terms, &field.led);
         let moved = rows.matrix.row_dot_abs(i, field.answer.u);
         let size = rows.matrix.row_dot_abs(i, &deformation.joined) + felt;
         let given = rows.rhs[i].abs() + rows.compliance[i] * force.abs();

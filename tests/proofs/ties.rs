@@ -89,6 +89,22 @@ fn a_motion_that_soft_unknowns_pass_on_to_stiff_ones_contradicts_nothing() {
     }
 }
 
+/// p = 1 and x = p with p in a strip whose K the rounding of the forces moves by more than 1, f = k_x: at p = x = 0 they balance the
+/// load and cancel at p, but both ties hold p, so that its gap is none of rounding.
+#[test]
+fn forces_that_cancel_on_a_soft_unknown_are_no_excuse_for_its_gap() {
+    for soft in [1e-10, 1e-12] {
+        let (n, load) = (7, 1e14 * soft);
+        let between: Vec<_> = (1..n).map(|i| (i - 1, i, soft)).collect();
+        let strip = body(springs(n, &between, &[(0, soft), (n - 1, soft)]), vec![], vec![0.0; n]);
+        let spring = body(springs(1, &[], &[(0, load)]), vec![], vec![load]);
+        let deck = deck(vec![spring, strip], &[], &[(&[(1, 1.0)], 1.0), (&[(1, 1.0), (0, -1.0)], 0.0)]);
+        let mut problem = hand_over::problem(&deck).unwrap();
+        let verdict = problem.check(&[0.0; 8], &[], &[load, -load]).unwrap();
+        assert!(!verdict.passed(), "{soft:e}: {verdict:?}");
+    }
+}
+
 /// Without any length rounding and a true contradiction look alike.
 #[test]
 fn a_row_without_entries_in_a_problem_without_length_is_refused_with_what_would_decide() {
