@@ -5,8 +5,10 @@
 //! D~_j = D_j + sum_i b_ij^2 / (sum_l b_il^2 / D~_l + C_i),   l outside the cluster of j and not found together with j
 //! ```
 //!
-//! from the stiffest outward. A row to the ground or within a cluster adds nothing, and D~ = D for all other unknowns.
+//! from the stiffest outward. The ground is the other unknown of a row with one entry, as stiff as the stiffest connection of two
+//! unknowns, which no penalty is. A row within a cluster adds nothing, and D~ = D for all other unknowns.
 
+use std::cell::OnceCell;
 use std::collections::HashMap;
 
 use crate::body::Stiffness;
@@ -14,7 +16,7 @@ use crate::certificate::grounded::each_entry;
 use crate::constraints::RowSet;
 use crate::error::Result;
 use crate::linalg::graph::joined;
-use crate::linalg::vector::NOISE;
+use crate::linalg::vector::{norm_max, NOISE};
 use crate::platform::memory::{filled, zeros};
 
 /// Rows give a carried unknown more than this times its own stiffness: with a smaller ratio kp / k an error of 1e-6 in a
@@ -54,7 +56,7 @@ impl Metric {
         unit: f64,
     ) -> Result<Self> {
         let (mut values, mut search) = Search::new(bodies, rows, holds, unit)?;
-        search.outward(bodies, |search, mut found, clusters| {
+        search.outward(|search, mut found, clusters| {
             clusters.keep_whole(&mut found);
             search.carry(found, clusters)
         })?;
@@ -74,7 +76,7 @@ pub fn led(
     unit: f64,
 ) -> Result<Vec<f64>> {
     let (mut values, mut search) = Search::new(bodies, rows, holds, unit)?;
-    search.outward(bodies, |search, found, _| {
+    search.outward(|search, found, _| {
         search.mark(&found, State::Found);
         let mut given = zeros(values.len(), WHAT)?;
         search.each_link(|row, yielding, stiffest| {
@@ -90,18 +92,23 @@ pub fn led(
 }
 
 struct Search<'a> {
+    bodies: &'a [Metered<'a>],
     rows: [&'a RowSet; 3],
     holds: &'a dyn Fn(usize, usize) -> bool,
     unit: f64,
+    /// The largest D / unit, and that of the ground, once a row needs it.
+    stiffest: f64,
+    ground: OnceCell<f64>,
     /// D~ / unit as far as it is known, n; 0 without stiffness.
     stiffness: Vec<f64>,
+    /// n + 1; the ground is the last.
     state: Vec<State>,
 }
 
 impl<'a> Search<'a> {
     /// D / unit, and the search before its first step.
     fn new(
-        bodies: &[Metered],
+        bodies: &'a [Metered],
         rows: [&'a RowSet; 3],
         holds: &'a dyn Fn(usize, usize) -> bool,
         unit: f64,
@@ -114,19 +121,36 @@ impl<'a> Search<'a> {
                 stiffness[start + i] = k.metric(i, 0.0) / unit;
             }
         }
-        Ok((values, Self { rows, holds, unit, stiffness, state: filled(n, State::Open, WHAT)? }))
+        let (stiffest, ground) = (norm_max(&stiffness), OnceCell::new());
+        let mut state = filled(n + 1, State::Open, WHAT)?;
+        state[n] = State::Carried;
+        Ok((values, Self { bodies, rows, holds, unit, stiffest, ground, stiffness, state }))
+    }
+
+    /// Stiffness of the ground: that of the stiffest connection of two unknowns, `max |K_ij|`, not of a penalty.
+    fn ground(&self) -> f64 {
+        *self.ground.get_or_init(|| {
+            let mut most = 0.0;
+            for (_, k, _) in self.bodies {
+                each_entry(*k, |i, j, v| {
+                    if i != j {
+                        most = v.abs().max(most)
+                    }
+                });
+            }
+            most / self.unit
+        })
     }
 
     /// From the stiffest outward: `carry` is given the unknowns that are found and tells whether it has carried some of them.
     fn outward(
         &mut self,
-        bodies: &[Metered],
         mut carry: impl FnMut(&mut Self, Vec<usize>, &Clusters) -> Result<bool>,
     ) -> Result<()> {
         if self.found(|j| j).is_empty() {
             return Ok(());
         }
-        let clusters = Clusters::of(bodies, self.state.len())?;
+        let clusters = Clusters::of(self.bodies, self.state.len())?;
         while carry(self, self.found(|j| clusters.of[j]), &clusters)? {}
         Ok(())
     }
@@ -150,6 +174,12 @@ impl<'a> Search<'a> {
                 let rounding = NOISE * set.largest_entry(i);
                 let entries = set.matrix.row(i).filter(|(_, b)| b.abs() > rounding);
                 row.extend(entries.map(|(j, b)| (j, b * b, b * b / self.stiffness[j])));
+                if let [(j, square, _)] = row[..] {
+                    // it holds no other unknown better than K does
+                    if self.state[j] == State::Found || CARRIED * self.stiffness[j] < self.stiffest {
+                        row.push((self.stiffness.len(), square, square / self.ground()));
+                    }
+                }
                 visit(&row, self.unit * set.compliance[i]);
             }
         }
@@ -189,32 +219,43 @@ impl<'a> Search<'a> {
                 return;
             }
             let others = || row.iter().filter(|entry| !is_found(entry));
-            let stiffest = others().map(|entry| self.stiffness[entry.0]).fold(0.0, f64::max);
+            let stiffest = others().map(|entry| entry.1 / entry.2).fold(0.0, f64::max);
             visit(&own, others().fold(compliance, |sum, entry| sum + entry.2), stiffest);
         });
     }
 
-    /// Gives these unknowns D~, without those to which their rows give less than `CARRIED` times their stiffness.
+    /// Gives these unknowns D~: first those that rows hold one by one, then, of groups that rows join, those which have as many rows
+    /// as unknowns; not those to which their rows give less than `CARRIED` times their stiffness.
     fn carry(&mut self, mut found: Vec<usize>, clusters: &Clusters) -> Result<bool> {
         loop {
             self.mark(&found, State::Found);
-            let mut given = zeros(self.state.len(), WHAT)?;
+            let (mut given, mut alone) = (zeros(self.state.len(), WHAT)?, zeros(self.state.len(), WHAT)?);
             let mut links = Vec::new();
             self.each_link(|row, yielding, _| {
                 row.iter().for_each(|(j, square, _)| given[*j] += square / yielding);
+                if let [(j, square, _)] = row {
+                    alone[*j] += square / yielding;
+                }
                 let places = row.iter().filter_map(|entry| found.binary_search(&entry.0).ok());
                 links.push(places.collect::<Vec<usize>>());
             });
+            self.mark(&found, State::Open);
+            let holds =
+                |j: usize, given: &[f64]| given[j] > CARRIED * self.stiffness[j] && given[j].is_normal();
+            let mut held: Vec<usize> = found.iter().copied().filter(|j| holds(*j, &alone)).collect();
+            clusters.keep_whole(&mut held);
+            if !held.is_empty() {
+                self.hold(&held, &alone);
+                return Ok(true);
+            }
             // fewer rows than unknowns leave some of their motions to K
             let (group, count) = joined(found.len(), links.iter().map(|places| places.iter().copied()));
             let mut spare = filled(count, 0i64, WHAT)?;
             links.iter().for_each(|places| spare[group[places[0]]] += 1);
             group.iter().for_each(|&group| spare[group] -= 1);
-            let holds = |j: usize| given[j] > CARRIED * self.stiffness[j] && given[j].is_normal();
             let enough = found.iter().zip(&group).filter(|(_, group)| spare[**group] >= 0);
-            let mut held: Vec<usize> = enough.map(|(j, _)| *j).filter(|j| holds(*j)).collect();
+            let mut held: Vec<usize> = enough.map(|(j, _)| *j).filter(|j| holds(*j, &given)).collect();
             clusters.keep_whole(&mut held);
-            self.mark(&found, State::Open);
             if held.len() == found.len() {
                 self.hold(&held, &given);
                 return Ok(!held.is_empty());

@@ -4,11 +4,13 @@
 use std::ops::Range;
 
 use crate::body::Body;
+use crate::certificate::led;
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::vector::{norm_max, NOISE};
 use crate::model::contents::Model;
 use crate::model::row_sets::empty_row_contradicts;
+use crate::platform::memory::filled;
 
 /// A right-hand side below this part of the length is not the rounding of a difference of such lengths: it is exact.
 const LAST_DIGIT: f64 = f64::EPSILON / 64.0;
@@ -20,8 +22,6 @@ const MARGINAL: f64 = 1e3;
 const DIGITS: Range<i32> = 5..13;
 /// Largest accuracy that digits of coordinates may show.
 const MOST: f64 = 1e-6;
-/// Longest chain of pilots between a load and what holds it.
-const CHAIN: usize = 8;
 /// Number of points whose digits are counted.
 const SAMPLE: usize = 256;
 
@@ -36,8 +36,8 @@ pub struct Accuracy {
 /// The lengths of which right-hand sides are differences.
 pub struct Lengths<'a> {
     model: &'a Model,
-    /// Of every body, its largest distance between coordinates and its motion `sum_j |f_j| / K_jj` by its load, K_jj or what
-    /// rows give; 0 without both. A load below 64 eps of the largest is none.
+    /// Of every body, its largest distance between coordinates and its motion `sum_j |f_j| / D^_j` by its load; 0 without
+    /// both. A load below 64 eps of the largest is none.
     of_bodies: Vec<f64>,
     /// Of the problem: the largest of all bodies and of the lengths `|h| / max |b|` and `-c / max |b|` that rows demand;
     /// without loads and coordinates also the smallest gap. Other gaps may be far: they say nothing.
@@ -47,8 +47,8 @@ pub struct Lengths<'a> {
 }
 
 impl Model {
-    pub fn lengths(&self) -> Lengths<'_> {
-        let held = self.held();
+    pub fn lengths(&self) -> Result<Lengths<'_>> {
+        let held = self.held()?;
         let loads = self.bodies.iter().filter_map(|given| given.body.load.as_ref());
         let least = NOISE * loads.map(|load| norm_max(load)).fold(0.0, f64::max);
         let of_body = |(body, start): (&Body, &usize)| {
@@ -79,39 +79,18 @@ impl Model {
         let mut ties = vec![0; held.len()];
         let rigid = (0..self.equalities.len()).filter(|&i| self.equalities.compliance[i] == 0.0);
         rigid.flat_map(|i| self.equalities.matrix.row(i)).for_each(|(j, _)| ties[j] += 1);
-        Lengths { model: self, of_bodies, whole: length, ties }
+        Ok(Lengths { model: self, of_bodies, whole: length, ties })
     }
 
-    /// What holds every unknown, force / length: K_jj, or the best of its rows as far as the other unknowns of this row are held,
-    /// `max_i b_ij^2 / (sum_l b_il^2 / d_l + C_i)`; pilots hang on each other in chains. Infinite without stiffness.
-    fn held(&self) -> Vec<f64> {
-        let of = |body: &Body| match body.k() {
-            Some(k) => (0..k.order()).map(|j| k.metric(j, f64::INFINITY)).collect(),
-            None => vec![f64::INFINITY; body.order],
+    /// What holds every unknown, D^, force / length; infinite without stiffness.
+    fn held(&self) -> Result<Vec<f64>> {
+        let bodies = self.bodies.iter().map(|given| given.body.k()).zip(&self.offsets);
+        let Some(bodies) =
+            bodies.map(|(k, start)| Some((*start, k?, f64::INFINITY))).collect::<Option<Vec<_>>>()
+        else {
+            return filled(self.sizes().dofs, f64::INFINITY, "the lengths of bodies");
         };
-        let mut held: Vec<f64> = self.bodies.iter().flat_map(|given| of(&given.body)).collect();
-        for _ in 0..CHAIN {
-            let mut changed = false;
-            for rows in [&self.contact, &self.equalities] {
-                for i in (0..rows.len()).filter(|&i| rows.is_finite(i)) {
-                    // only the entry that yields most gains by the others
-                    let yields = |(j, b): (usize, f64)| b * b / held[j];
-                    let Some((j, b)) = rows.matrix.row(i).max_by(|x, y| yields(*x).total_cmp(&yields(*y)))
-                    else {
-                        continue;
-                    };
-                    let others = rows.matrix.row(i).filter(|(l, _)| *l != j).map(yields).sum::<f64>();
-                    let given = b * b / (others + rows.compliance[i]);
-                    if others > 0.0 && given > 2.0 * held[j] {
-                        (held[j], changed) = (given, true);
-                    }
-                }
-            }
-            if !changed {
-                break;
-            }
-        }
-        held
+        led(&bodies, RowKind::ALL.map(|kind| self.rows(kind)), &|_, _| true, 1.0)
     }
 
     /// The accuracy of rows that the host makes from coordinates: `data_accuracy`, raised to what the digits of the

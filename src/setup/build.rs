@@ -34,7 +34,7 @@ impl Prepared {
         let begun = Instant::now();
         self.follow(model);
         model.check_complete()?;
-        let lengths = model.lengths();
+        let lengths = model.lengths()?;
         lengths.check_empty_rows()?;
         if self.is_up_to_date(model) {
             self.refresh_gaps(&lengths);

@@ -27,8 +27,8 @@ impl Problem {
         self.decompose()?;
         let Self { model: host, decomposition, prepared, .. } = self;
         let model = solved(host, decomposition);
-        host.lengths().check_empty_rows()?;
-        prepared.refresh_gaps(&model.lengths());
+        host.lengths()?.check_empty_rows()?;
+        prepared.refresh_gaps(&model.lengths()?);
         let counts = host.sizes();
         let lengths = [
             ("n", u, counts.dofs),

@@ -7,12 +7,14 @@
 //! | [`bolt`] | the section of a bolt, whose halves a pilot pulls together |
 //! | [`changes`] | rows and stiffnesses that change whether an unknown is carried |
 //! | [`elastic`] | an elastic punch on an elastic block, led by a pilot, alone or hung on it by weak springs |
+//! | [`ground`] | loaded pilots that rows set to a place or press onto a wall |
 //! | [`hung`] | pilots hung by weak springs on the body that they press, in one matrix |
 
 mod bolt;
 mod by_hand;
 mod changes;
 mod elastic;
+mod ground;
 mod hung;
 
 use feti_contact::solver::{Outcome, Problem, Report, RowKind, RowsInput, Storage};
