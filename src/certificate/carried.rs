@@ -5,11 +5,11 @@
 //! D~_j = D_j + sum_i b_ij^2 / (sum_l b_il^2 / D~_l + C_i),   l outside the cluster of j and not found together with j
 //! ```
 //!
-//! from the stiffest outward. The ground is the other unknown of a row with one entry, as stiff as the stiffest connection of two
-//! unknowns, which no penalty is. A row within a cluster adds nothing, and D~ = D for all other unknowns.
+//! from the stiffest outward. Where K couples the only unknown of a row to no other, the ground is the other unknown of this row, as
+//! stiff as the stiffest connection of two unknowns. A row within a cluster adds nothing, and D~ = D for all other unknowns.
 
-use std::cell::OnceCell;
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use crate::body::Stiffness;
 use crate::certificate::grounded::each_entry;
@@ -92,13 +92,11 @@ pub fn led(
 }
 
 struct Search<'a> {
-    bodies: &'a [Metered<'a>],
     rows: [&'a RowSet; 3],
     holds: &'a dyn Fn(usize, usize) -> bool,
     unit: f64,
-    /// The largest D / unit, and that of the ground, once a row needs it.
-    stiffest: f64,
-    ground: OnceCell<f64>,
+    /// None if rows hold no unknown far better than K.
+    clusters: Option<Rc<Clusters>>,
     /// D~ / unit as far as it is known, n; 0 without stiffness.
     stiffness: Vec<f64>,
     /// n + 1; the ground is the last.
@@ -108,7 +106,7 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     /// D / unit, and the search before its first step.
     fn new(
-        bodies: &'a [Metered],
+        bodies: &[Metered],
         rows: [&'a RowSet; 3],
         holds: &'a dyn Fn(usize, usize) -> bool,
         unit: f64,
@@ -121,25 +119,21 @@ impl<'a> Search<'a> {
                 stiffness[start + i] = k.metric(i, 0.0) / unit;
             }
         }
-        let (stiffest, ground) = (norm_max(&stiffness), OnceCell::new());
         let mut state = filled(n + 1, State::Open, WHAT)?;
         state[n] = State::Carried;
-        Ok((values, Self { bodies, rows, holds, unit, stiffest, ground, stiffness, state }))
+        let mut search = Self { rows, holds, unit, clusters: None, stiffness, state };
+        if search.is_needed() {
+            search.clusters = Some(Rc::new(Clusters::of(bodies, n + 1)?));
+        }
+        Ok((values, search))
     }
 
-    /// Stiffness of the ground: that of the stiffest connection of two unknowns, `max |K_ij|`, not of a penalty.
-    fn ground(&self) -> f64 {
-        *self.ground.get_or_init(|| {
-            let mut most = 0.0;
-            for (_, k, _) in self.bodies {
-                each_entry(*k, |i, j, v| {
-                    if i != j {
-                        most = v.abs().max(most)
-                    }
-                });
-            }
-            most / self.unit
-        })
+    /// Whether rows may hold some unknown far better than K: another unknown, or the ground.
+    fn is_needed(&self) -> bool {
+        let stiffest = norm_max(&self.stiffness);
+        let mut soft = false;
+        self.each_row(|row, _| soft |= row.len() == 1 && CARRIED * self.stiffness[row[0].0] < stiffest);
+        soft || !self.found(|j| j).is_empty()
     }
 
     /// From the stiffest outward: `carry` is given the unknowns that are found and tells whether it has carried some of them.
@@ -147,10 +141,7 @@ impl<'a> Search<'a> {
         &mut self,
         mut carry: impl FnMut(&mut Self, Vec<usize>, &Clusters) -> Result<bool>,
     ) -> Result<()> {
-        if self.found(|j| j).is_empty() {
-            return Ok(());
-        }
-        let clusters = Clusters::of(self.bodies, self.state.len())?;
+        let Some(clusters) = self.clusters.clone() else { return Ok(()) };
         while carry(self, self.found(|j| clusters.of[j]), &clusters)? {}
         Ok(())
     }
@@ -174,10 +165,9 @@ impl<'a> Search<'a> {
                 let rounding = NOISE * set.largest_entry(i);
                 let entries = set.matrix.row(i).filter(|(_, b)| b.abs() > rounding);
                 row.extend(entries.map(|(j, b)| (j, b * b, b * b / self.stiffness[j])));
-                if let [(j, square, _)] = row[..] {
-                    // it holds no other unknown better than K does
-                    if self.state[j] == State::Found || CARRIED * self.stiffness[j] < self.stiffest {
-                        row.push((self.stiffness.len(), square, square / self.ground()));
+                if let (Some(clusters), [(j, square, _)]) = (&self.clusters, &row[..]) {
+                    if clusters.is_alone(*j) {
+                        row.push((self.stiffness.len(), *square, *square / (clusters.ground / self.unit)));
                     }
                 }
                 visit(&row, self.unit * set.compliance[i]);
@@ -269,13 +259,16 @@ impl<'a> Search<'a> {
 struct Clusters {
     of: Vec<usize>,
     sizes: Vec<usize>,
+    /// Stiffness of the ground: of the stiffest connection of two unknowns, `max |K_ij|`, not of a penalty; force / length.
+    ground: f64,
 }
 
 impl Clusters {
     fn of(bodies: &[Metered], n: usize) -> Result<Self> {
-        let (mut pairs, mut hidden) = (Vec::new(), Vec::new());
+        let (mut pairs, mut hidden, mut ground) = (Vec::new(), Vec::new(), 0.0f64);
         for (start, k, _) in bodies {
             let couple = |i: usize, j: usize, v: f64| {
+                ground = if i == j { ground } else { ground.max(v.abs()) };
                 // as far apart as a pilot and the body on which it hangs: |K_ij| < (K_ii K_jj)^1/2 / CARRIED
                 let [part, of] = [i, j].map(|of| CARRIED * v.abs() / k.metric(of, 0.0));
                 if i != j && v != 0.0 && (part * of).is_nan() | (part * of >= 1.0) {
@@ -291,7 +284,12 @@ impl Clusters {
         of.iter().for_each(|&cluster| sizes[cluster] += 1);
         // K+ of a body whose entries the host keeps cannot hold further unknowns
         hidden.into_iter().for_each(|j| sizes[of[j]] += CLUSTER);
-        Ok(Self { of, sizes })
+        Ok(Self { of, sizes, ground })
+    }
+
+    /// K couples it to no other unknown. Elastic bodies deform on the ground, also soft ones.
+    fn is_alone(&self, j: usize) -> bool {
+        self.sizes[self.of[j]] == 1
     }
 
     /// Keeps the unknowns of small clusters all of which are among these.
