@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use crate::body::Stiffness;
-use crate::certificate::carried::{led, Metric};
+use crate::certificate::carried::{Metric, Search};
 use crate::certificate::{BodyData, Candidate, Data, NOISE};
 use crate::constraints::{row_scales, RowKind, RowSet};
 use crate::error::Result;
@@ -38,8 +38,7 @@ pub(super) struct Field<'a> {
 impl<'a> Field<'a> {
     pub fn new(data: &'a Data<'a>, answer: Candidate<'a>) -> Result<Self> {
         let n = answer.u.len();
-        let metered: Vec<_> =
-            data.bodies.iter().map(|body| (body.start, body.stiffness, body.unit)).collect();
+        let metered = data.metered();
         let stiffest = |(_, k, unit): &(usize, Stiffness, f64)| {
             (0..k.order()).map(|i| k.metric(i, *unit)).fold(0.0, f64::max)
         };
@@ -47,8 +46,9 @@ impl<'a> Field<'a> {
         let forces = RowKind::ALL.map(|kind| answer.forces(kind));
         let holds = |kind: usize, i: usize| kind == RowKind::Equality as usize || forces[kind][i] != 0.0;
         let rows = RowKind::ALL.map(|kind| data.rows(kind));
-        let Metric { values: metric, carried: places } = Metric::of(&metered, rows, &holds, unit)?;
-        let led = led(&metered, rows, &holds, unit)?;
+        let search = Search::new(&metered, rows, &holds, unit)?;
+        let led = search.clone().led()?;
+        let Metric { values: metric, carried: places } = search.metric()?;
         let mut carried = vec![false; n];
         places.into_iter().for_each(|j| carried[j] = true);
         let motions = data.bodies.iter().map(|body| motions(body, unit, &metric, &carried));
@@ -104,9 +104,7 @@ impl<'a> Field<'a> {
 
     /// `b_i D^-1 b_i' + C_i` in D^, length / force.
     pub fn compliance(&self, kind: RowKind, i: usize) -> f64 {
-        let rows = self.rows(kind);
-        let yields = |(j, b): (usize, f64)| b * b / self.led[j];
-        rows.matrix.row(i).map(yields).sum::<f64>() / self.unit + rows.compliance[i]
+        self.rows(kind).yields(i, &self.led, self.unit) / self.unit
     }
 
     /// The bodies that row i touches, ascending.

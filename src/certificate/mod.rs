@@ -27,6 +27,7 @@ use crate::error::Result;
 use crate::linalg::Matrix;
 
 pub use crate::linalg::vector::NOISE;
+use carried::Metered;
 pub use carried::{led, Metric};
 use deformation::Deformation;
 use energy::Energies;
@@ -56,6 +57,11 @@ pub struct Data<'a> {
 }
 
 impl<'a> Data<'a> {
+    /// The bodies, for the search for what rows hold.
+    pub fn metered(&self) -> Vec<Metered<'a>> {
+        self.bodies.iter().map(|body| (body.start, body.stiffness, body.unit)).collect()
+    }
+
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
         match kind {
             RowKind::Inequality => self.contact,

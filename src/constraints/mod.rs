@@ -72,6 +72,11 @@ impl RowSet {
         self.rhs.len()
     }
 
+    /// `b_i D^-1 b_i' + C_i` in units of `1 / unit`; `metric` is D / `unit`.
+    pub fn yields(&self, i: usize, metric: &[f64], unit: f64) -> f64 {
+        self.matrix.row(i).map(|(j, v)| v * v / metric[j]).sum::<f64>() + unit * self.compliance[i]
+    }
+
     /// What was taken from the right-hand side of row i as rounding, length.
     pub fn rounding(&self, i: usize) -> f64 {
         self.rounding.get(i).copied().unwrap_or(0.0)
@@ -259,7 +264,7 @@ fn values_from(values: &mut [f64], first: usize, count: usize) -> Result<&mut [f
 /// row without entries, and for a row whose square is not a normal number.
 pub fn row_scales(rows: &RowSet, metric: &[f64], unit: f64) -> Vec<f64> {
     (0..rows.len())
-        .map(|i| rows.matrix.row(i).map(|(j, v)| v * v / metric[j]).sum::<f64>() + unit * rows.compliance[i])
+        .map(|i| rows.yields(i, metric, unit))
         .map(|square| if square.is_normal() { square.sqrt().recip() } else { 0.0 })
         .collect()
 }

@@ -5,9 +5,12 @@ use feti_contact::solver::{Problem, RowKind};
 
 use crate::{add_body, add_rows, assert_near, forces, solved, DUMMY};
 
-/// Two nodes in a bar k between them, the first on a support k.
-fn bar(k: f64) -> [f64; 4] {
-    [2.0 * k, -k, -k, k]
+/// A bar k between two nodes, the first on a support k, and pilots kp with the load F.
+fn bar_and_pilots(k: f64, pilots: usize, kp: f64, force: f64) -> Problem {
+    let mut problem = Problem::new();
+    add_body(&mut problem, &[2.0 * k, -k, -k, k], &[0.0, 0.0]);
+    (0..pilots).for_each(|_| add_body(&mut problem, &[kp], &[force]));
+    problem
 }
 
 /// A pilot with the load F is set to a place by a row and leads the end of the bar: u = (place / 2, place), k place / 2 at the end.
@@ -19,9 +22,7 @@ fn a_loaded_pilot_set_to_a_place_is_there() {
         if !tied && kp > 0.0 && kp < 1e-20 {
             continue;
         }
-        let mut problem = Problem::new();
-        add_body(&mut problem, &bar(k), &[0.0, 0.0]);
-        add_body(&mut problem, &[kp], &[force]);
+        let mut problem = bar_and_pilots(k, 1, kp, force);
         add_rows(&mut problem, RowKind::Equality, &[(&[(2, 1.0)], place)]);
         let end = if tied { place } else { 0.0 };
         if tied {
@@ -40,9 +41,7 @@ fn a_loaded_pilot_set_to_a_place_is_there() {
 fn a_pilot_pressed_onto_a_wall_stops_there() {
     let (k, force, gap) = (1e6, 4e4, 0.003);
     for kp in DUMMY {
-        let mut problem = Problem::new();
-        add_body(&mut problem, &bar(k), &[0.0, 0.0]);
-        add_body(&mut problem, &[kp], &[force]);
+        let mut problem = bar_and_pilots(k, 1, kp, force);
         add_rows(&mut problem, RowKind::Equality, &[(&[(1, 1.0), (2, -1.0)], 0.0)]);
         add_rows(&mut problem, RowKind::Inequality, &[(&[(2, 1.0)], gap)]);
         let what = format!("kp {kp:e}");
@@ -57,9 +56,7 @@ fn a_pilot_pressed_onto_a_wall_stops_there() {
 fn pilots_that_rows_hold_one_by_one_hold_the_others_of_their_rows() {
     let (k, force, place) = (1e6, 4e4, 0.25);
     for kp in DUMMY {
-        let mut problem = Problem::new();
-        add_body(&mut problem, &bar(k), &[0.0, 0.0]);
-        (0..3).for_each(|_| add_body(&mut problem, &[kp], &[force]));
+        let mut problem = bar_and_pilots(k, 3, kp, force);
         let rows: [(&[_], f64); 3] =
             [(&[(2, 1.0)], place), (&[(1, 1.0), (3, -1.0)], 0.0), (&[(3, 1.0), (2, 2.0), (4, -1.0)], 0.0)];
         add_rows(&mut problem, RowKind::Equality, &rows);
@@ -76,9 +73,7 @@ fn pilots_that_rows_hold_one_by_one_hold_the_others_of_their_rows() {
 #[test]
 fn two_places_for_one_loaded_pilot_contradict_each_other() {
     for kp in DUMMY {
-        let mut problem = Problem::new();
-        add_body(&mut problem, &bar(1e6), &[0.0, 0.0]);
-        add_body(&mut problem, &[kp], &[4e4]);
+        let mut problem = bar_and_pilots(1e6, 1, kp, 4e4);
         add_rows(&mut problem, RowKind::Equality, &[(&[(2, 1.0)], 0.25), (&[(1, 1.0), (2, -1.0)], 0.0)]);
         add_rows(&mut problem, RowKind::Inequality, &[(&[(2, 1.0)], 0.25 - 1e-6)]);
         let error = problem.solve().expect_err(&format!("kp {kp:e}"));

@@ -164,9 +164,8 @@ impl<'a> Contradictions<'a> {
             return Ok(metric);
         }
         let data = self.case.data()?;
-        let bodies: Vec<_> = data.bodies.iter().map(|body| (body.start, body.stiffness, body.unit)).collect();
         let rows = RowKind::ALL.map(|kind| data.rows(kind));
-        let metric = led(&bodies, rows, &|_, _| true, self.case.ready.island.unit)?;
+        let metric = led(&data.metered(), rows, &|_, _| true, self.case.ready.island.unit)?;
         Ok(self.metric.get_or_init(|| metric))
     }
 
@@ -176,9 +175,7 @@ impl<'a> Contradictions<'a> {
         let of = |i: usize| {
             let (set, k) = ready.island.row(i);
             let c = if i < ready.rows.contact { (-set.rhs[k]).max(0.0) } else { set.rhs[k].abs() };
-            let yields = |(j, b): (usize, f64)| b * b / metric[j];
-            let all = set.matrix.row(k).map(yields).sum::<f64>() + ready.island.unit * set.compliance[k];
-            ratio(c + set.rounding(k), all.sqrt())
+            ratio(c + set.rounding(k), set.yields(k, metric, ready.island.unit).sqrt())
         };
         let all: Vec<f64> = (0..ready.rows.scaling.scale.len()).map(of).collect();
         Ok(weighted_norm(&all, |_| 1.0))
