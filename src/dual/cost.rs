@@ -57,6 +57,16 @@ impl Size {
         }
     }
 
+    /// Multiplications of a factorisation of K_p, at least; infinite if the factor is the host's.
+    pub fn factorisation(&self) -> f64 {
+        let [n, l] = [self.unknowns, self.entries].map(|count| count as f64);
+        if self.entries == 0 {
+            f64::INFINITY
+        } else {
+            l * l / n
+        }
+    }
+
     /// Operations of the assembly of F_p.
     pub fn assembly(&self) -> f64 {
         let [m, p, n, l] = [self.rows, self.places, self.unknowns, self.entries].map(|count| count as f64);

@@ -58,8 +58,9 @@ struct Subdomain {
     operator: Option<Packed>,
     /// Power of two by which `K_p+` and its products are multiplied, so that forces of all bodies have one unit.
     by: f64,
-    /// Multiplications of a product with F_p.
+    /// Multiplications of a product with F_p, and of a factorisation of K_p.
     work: usize,
+    factorisation: f64,
 }
 
 pub struct Dual {
@@ -122,6 +123,7 @@ impl Draft {
                 operator: None,
                 by: part.by,
                 work: part.size.work(part.implicit),
+                factorisation: part.size.factorisation(),
             });
         }
         Self { subdomains, distinct }

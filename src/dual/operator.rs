@@ -9,6 +9,8 @@ use crate::platform::memory::zeros;
 use crate::platform::tally;
 
 const WHAT: &str = "a product with the dual operator";
+/// Multiplications of a step per row, besides those of its product.
+const VECTORS: usize = 100;
 
 /// Accuracy of products with F.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,6 +75,16 @@ impl Dual {
     /// Multiplications of a product with F.
     pub fn product_work(&self) -> usize {
         self.subdomains.iter().map(|s| s.work).sum()
+    }
+
+    /// Multiplications of a step: a product, and vectors over the rows.
+    pub fn step_work(&self) -> f64 {
+        (self.product_work() + VECTORS * self.order()) as f64
+    }
+
+    /// Multiplications of a factorisation of all K_p, at least.
+    pub fn factorisation_work(&self) -> f64 {
+        self.subdomains.iter().map(|s| s.factorisation).sum()
     }
 
     /// Number of bodies with an assembled operator.

@@ -30,11 +30,26 @@ pub trait AcceptanceTest {
     fn has_better_data(&self) -> bool {
         false
     }
-    /// Corrects a solution that was not accepted with better data than A and b; with `inside` also from forces that depend on these
-    /// data alone, which need to be tried only once.
-    fn mended(&mut self, _: &Solution, _inside: bool) -> Result<Mended> {
+    /// The number of steps as expensive as this effort; none if that is not known.
+    fn pays_after(&self, _: Effort) -> Option<usize> {
+        None
+    }
+    /// Corrects a solution that was not accepted with better data than A and b.
+    fn mended(&mut self, _: &Solution, _: Effort) -> Result<Mended> {
         Ok(Mended::Failed)
     }
+}
+
+/// What may be spent on a correction by better data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// A few active sets, or the interior point: only an answer that is correct to rounding replaces the solution.
+    FewSets,
+    Interior,
+    /// Whatever active sets from that of the solution take.
+    AllSets,
+    /// Also from an interior point.
+    All,
 }
 
 /// What correction by better data has found.
@@ -42,6 +57,8 @@ pub enum Mended {
     Accepted(Solution),
     /// No answer passes, but these forces are close to one.
     Near(Vec<f64>),
+    /// It costs more than was known, and was not tried: see `pays_after`.
+    Dear,
     Failed,
 }
 

@@ -22,7 +22,9 @@ mod restricted;
 mod rungs;
 mod space;
 
-pub use acceptance::{AcceptanceTest, Limits, Mended, Observer, Solution, StepKind, StepReport, Verdict};
+pub use acceptance::{
+    AcceptanceTest, Effort, Limits, Mended, Observer, Solution, StepKind, StepReport, Verdict,
+};
 pub use between_solves::BetweenSolves;
 pub use coarse::AnswerFace;
 pub use conjugate::MOST as KEPT;

@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::linalg::{Csr, Entries, Matrix, Operator};
-use crate::qp::{AcceptanceTest, Direct, Mended, Preconditioner, Qp, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Direct, Effort, Mended, Preconditioner, Qp, Solution, Verdict};
 
 pub struct Restricted<'a> {
     whole: Qp<'a>,
@@ -157,11 +157,15 @@ impl AcceptanceTest for Judged<'_> {
         self.whole.has_better_data()
     }
 
-    fn mended(&mut self, solution: &Solution, inside: bool) -> Result<Mended> {
-        Ok(match self.whole.mended(&self.on.whole(solution.clone()), inside)? {
+    fn pays_after(&self, effort: Effort) -> Option<usize> {
+        self.whole.pays_after(effort)
+    }
+
+    fn mended(&mut self, solution: &Solution, effort: Effort) -> Result<Mended> {
+        Ok(match self.whole.mended(&self.on.whole(solution.clone()), effort)? {
             Mended::Accepted(mended) => self.on.part(mended).map_or(Mended::Failed, Mended::Accepted),
             Mended::Near(x) => Mended::Near(self.on.start(&x)),
-            Mended::Failed => Mended::Failed,
+            failed => failed,
         })
     }
 }

@@ -8,8 +8,8 @@ use crate::error::Result;
 use crate::linalg::vector::norm;
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
-use crate::qp::{AcceptanceTest, Mended, Solution, Verdict};
-use crate::solve::finish::{finish, Finished};
+use crate::qp::{AcceptanceTest, Effort, Mended, Rung, Solution, Verdict};
+use crate::solve::finish::{factorisations, finish, Finished};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
 
@@ -156,15 +156,32 @@ impl AcceptanceTest for Certifier<'_> {
         self.recovery.ready.whole.is_some()
     }
 
-    fn mended(&mut self, solution: &Solution, inside: bool) -> Result<Mended> {
+    fn pays_after(&self, effort: Effort) -> Option<usize> {
+        let (dual, faces) = (&self.recovery.ready.dual, &self.recovery.faces);
+        let work = faces.sparse_work().unwrap_or_else(|| dual.factorisation_work());
+        let steps = factorisations(effort)? * work / dual.step_work();
+        let can = faces.direct.limit > 0 && steps < f64::INFINITY && Rung::Faces.is_tried();
+        can.then(|| steps.ceil() as usize)
+    }
+
+    fn mended(&mut self, solution: &Solution, effort: Effort) -> Result<Mended> {
         let begun = Instant::now();
         let mut ending = self.ending(solution.clone())?;
         self.recovery.bring_to_rest(&mut ending)?;
-        let Finished { replaced, inside } = finish(&self.recovery, &mut ending, inside)?;
+        let Finished { replaced, settled, inside } = finish(&self.recovery, &mut ending, effort)?;
         self.spent += begun.elapsed();
-        if !replaced && !ending.judgement.certificate.passed() {
+        let is_answer = match factorisations(effort) {
+            Some(_) => replaced && settled,
+            None => replaced || ending.judgement.certificate.passed(),
+        };
+        if !is_answer {
             interrupt::check()?;
-            return Ok(inside.map_or(Mended::Failed, Mended::Near));
+            let is_dear = self.pays_after(effort).is_some_and(|pays| pays > solution.counts.steps());
+            return Ok(match inside {
+                _ if is_dear => Mended::Dear,
+                Some(inside) => Mended::Near(inside),
+                None => Mended::Failed,
+            });
         }
         let Ending { solution, deformed, recovered, judgement } = ending;
         let point = (copied(&solution.x, "forces")?, copied(&solution.alpha, "amplitudes")?);
@@ -215,7 +232,7 @@ pub(super) mod tests {
         let case = Case { model, prepared: &prepared, ready };
         let dual = scaled(case).unwrap();
         let (qp, direct) = (dual.qp(ready, &ready.dual), direct(case).unwrap());
-        let recovery = Recovery::new(case, &dual, Faces { qp, direct }).unwrap();
+        let recovery = Recovery::new(case, &dual, Faces::new(qp, direct)).unwrap();
         work(&mut Certifier::new(recovery));
     }
 

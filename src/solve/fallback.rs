@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::model::Settings;
 use crate::progress::Steps;
 use crate::qp::paper::algorithm_3;
-use crate::qp::{minimise, AcceptanceTest, Direct, Limits, Mended, Qp, Rung, Solution, Verdict};
+use crate::qp::{minimise, AcceptanceTest, Direct, Effort, Limits, Mended, Qp, Rung, Solution, Verdict};
 use crate::solve::paper;
 
 /// How the dual is solved.
@@ -21,8 +21,8 @@ pub struct Found {
     pub held: Vec<bool>,
 }
 
-/// S10 of docs/method.md: solves the dual by proportioning and, where that gives up, on faces by the data of the host; where these
-/// have no answer, by proportioning from an interior point.
+/// S10 of docs/method.md: solves the dual by proportioning, which tries faces by the data of the host once its steps have cost as much,
+/// and where it gives up, on such faces at any cost; where these have no answer, by proportioning from an interior point.
 pub fn solve_dual(
     means: &MethodOptions,
     qp: Qp,
@@ -37,11 +37,15 @@ pub fn solve_dual(
         return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, steps);
     }
     let mut solution = minimise(qp, start, limits, judge, steps)?;
-    let inside = on_faces(&mut solution, means.direct, judge, steps, true)?;
+    if solution.counts.direct > 0 {
+        let after = solution.counts.steps();
+        steps.line(format!("after {after} steps a direct solution on active sets cost no more than they: it is correct to rounding"))?;
+    }
+    let inside = on_faces(&mut solution, means.direct, judge, steps, Effort::All)?;
     if let Some(x) = inside.filter(|_| Rung::Again.is_tried()) {
         steps.line("the method starts again from the forces of an interior point".to_owned())?;
         let again = minimise(qp, &x, limits, judge, steps).and_then(|mut again| {
-            on_faces(&mut again, means.direct, judge, steps, false)?;
+            on_faces(&mut again, means.direct, judge, steps, Effort::AllSets)?;
             Ok(again)
         });
         return better(solution, again);
@@ -49,14 +53,14 @@ pub fn solve_dual(
     Ok(solution)
 }
 
-/// Corrects an incomplete solution on faces by the data of the host, with `inside` also from an interior point; if none of them has
-/// an answer, forces close to one.
+/// Corrects an incomplete solution on faces by the data of the host; if none of them has an answer, forces close to one, if the effort
+/// includes them.
 fn on_faces(
     solution: &mut Solution,
     direct: Direct,
     judge: &mut dyn AcceptanceTest,
     steps: &mut Steps,
-    inside: bool,
+    effort: Effort,
 ) -> Result<Option<Vec<f64>>> {
     let is_incomplete = gave_up(solution) || solution.verdict == Verdict::StepLimit;
     if !is_incomplete || direct.limit == 0 || !Rung::Faces.is_tried() {
@@ -70,10 +74,10 @@ fn on_faces(
     };
     let after = solution.counts.steps();
     steps.line(format!("after {after} steps {why}: direct solution on active sets follows"))?;
-    match judge.mended(solution, inside) {
+    match judge.mended(solution, effort) {
         Ok(Mended::Accepted(mended)) => *solution = mended,
         Ok(Mended::Near(x)) => return Ok(Some(x)),
-        Ok(Mended::Failed) => {}
+        Ok(Mended::Dear | Mended::Failed) => {}
         Err(error) => solution.verdict = Verdict::of_refusal(error)?,
     }
     Ok(None)
@@ -159,7 +163,7 @@ mod tests {
                 let stops = Stops::never();
                 let mut steps = Steps::new(0, 1.0, qp.bounded, stops, &mut lines);
                 let mut done = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
-                let near = on_faces(&mut done, Direct { limit, ..direct }, judge, &mut steps, true);
+                let near = on_faces(&mut done, Direct { limit, ..direct }, judge, &mut steps, Effort::All);
                 assert!(near.unwrap().is_none());
                 assert_eq!(done.verdict, verdict);
                 assert_eq!(done.x[0] == 2.0, verdict == Verdict::Solved);

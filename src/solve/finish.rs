@@ -1,13 +1,11 @@
 //! Option `finish`: after a solve, the residuals of the host's data correct forces and displacements together, each time
 //! on the rows that these data show to be in contact, until only rounding is left.
 
-use std::rc::Rc;
-
 use crate::certificate::Certificate;
 use crate::error::{Kind, Result};
 use crate::model::{FinishBy, Method, Settings};
 use crate::platform::interrupt;
-use crate::qp::{Face, Rung, Verdict};
+use crate::qp::{Effort, Face, Rung, Verdict};
 use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::pivots::Pivots;
 use crate::solve::recovery::{Ending, Faces, Recovery};
@@ -47,28 +45,38 @@ fn is_delicate(recovery: &Recovery, ending: &Ending) -> bool {
     ending.judgement.leverage >= FAR || recovery.soft || recovery.ready.rows.uneven
 }
 
+/// Factorisations that this effort takes, if it has a limit: those of the active sets, or of some twenty steps into the interior.
+pub fn factorisations(effort: Effort) -> Option<f64> {
+    match effort {
+        Effort::FewSets => Some(4.0),
+        Effort::Interior => Some(16.0),
+        Effort::AllSets | Effort::All => None,
+    }
+}
+
 /// What the finish has done.
 #[derive(Default)]
 pub struct Finished {
     /// A corrected answer replaced the given one: it passes and its certificate is no worse.
     pub replaced: bool,
+    /// The last answer is correct up to rounding, or confirms its active set.
+    pub settled: bool,
     /// No answer passes: forces of an interior point, from which the method may start again.
     pub inside: Option<Vec<f64>>,
 }
 
 /// Corrects the answer. If the host, the time limit or a lack of memory stops the finish, `ending` stays as it is. Nothing is
 /// corrected where motions count as undetermined although rows of the host resist them a little: these rows would move bodies
-/// along them. `inside`: an answer that does not pass may be sought from an interior point on.
-pub fn finish(recovery: &Recovery, ending: &mut Ending, inside: bool) -> Result<Finished> {
+/// along them.
+pub fn finish(recovery: &Recovery, ending: &mut Ending, effort: Effort) -> Result<Finished> {
     if recovery.scaled.cleaned.is_some() {
         return Ok(Finished::default());
     }
     let negative = NegativeMotions::of(recovery.ready);
     let delicate = is_delicate(recovery, ending);
-    let passed = ending.judgement.certificate.passed();
-    let mut finish =
-        Finish { recovery, ending, delicate, passed, negative, sparse: None, done: Finished::default() };
-    match finish.run(inside) {
+    let passed = ending.judgement.certificate.passed() && factorisations(effort).is_none();
+    let mut finish = Finish { recovery, ending, delicate, passed, negative, done: Finished::default() };
+    match finish.run(effort) {
         Ok(()) => {}
         Err(error) if error.kind == Kind::Memory => {}
         Err(error) => drop(Verdict::of_refusal(error)?),
@@ -85,30 +93,38 @@ struct Finish<'a, 'b> {
     ending: &'b mut Ending,
     /// Rounding of K along motions no larger than the deformation matters, and so do errors below those of the certificate.
     delicate: bool,
-    /// The given answer passes.
+    /// The given answer passes, and needs no sparse factors.
     passed: bool,
     negative: NegativeMotions,
-    /// Sparse factors of the island, if already asked for.
-    sparse: Option<Rc<SparseFaces<'a>>>,
     done: Finished,
 }
 
-impl<'a> Finish<'a, '_> {
+impl<'a, 'b> Finish<'a, 'b> {
     /// Active sets from that of the answer on; if none of them has an answer that passes, from that of an interior point on.
-    fn run(&mut self, inside: bool) -> Result<()> {
-        let qp = &self.recovery.faces.qp;
+    fn run(&mut self, effort: Effort) -> Result<()> {
+        let Faces { qp, direct, .. } = &self.recovery.faces;
+        let (mut dense, mut sets) = (direct.limit, usize::MAX);
+        if let Some(factorisations) = factorisations(effort) {
+            let spent = self.ending.solution.counts.steps() as f64 * self.recovery.ready.dual.step_work();
+            if !self.sparse()?.is_some_and(|faces| factorisations * faces.work() <= spent) {
+                return Ok(());
+            }
+            (dense, sets) = (0, factorisations as usize);
+        }
         let point = SplitPoint::of(self.recovery, self.ending, if self.delicate { 1.0 } else { FAR })?;
         if self.recovery.friction {
             return self.follow_friction(point);
         }
-        self.follow(qp.at_bound(&self.ending.solution.x), point)?;
-        if self.passes() || !inside {
-            return Ok(());
+        if effort != Effort::Interior {
+            self.follow(qp.at_bound(&self.ending.solution.x), point, (dense, sets))?;
+            if self.passes() || effort != Effort::All {
+                return Ok(());
+            }
         }
         let Some(faces) = self.sparse()? else { return Ok(()) };
-        let Some((active, inside)) = faces.inside(self.recovery)? else { return Ok(()) };
+        let Some((active, inside)) = faces.inside(self.recovery.scaled)? else { return Ok(()) };
         if Rung::Interior.is_tried() {
-            self.follow(active, SplitPoint::inside(self.recovery, &inside))?;
+            self.follow(active, SplitPoint::inside(self.recovery, &inside), (dense, sets))?;
         }
         self.done.inside = (!self.passes()).then_some(inside.force);
         Ok(())
@@ -119,25 +135,32 @@ impl<'a> Finish<'a, '_> {
     }
 
     /// A factor of the whole island costs as much as its setup: only an answer that does not pass is worth it.
-    fn sparse(&mut self) -> Result<Option<Rc<SparseFaces<'a>>>> {
-        if self.sparse.is_none() && !self.passed {
-            self.sparse = SparseFaces::of(self.recovery)?.map(Rc::new);
+    fn sparse(&self) -> Result<Option<&'b SparseFaces<'a>>> {
+        let recovery = self.recovery;
+        if self.passed {
+            return Ok(None);
         }
-        Ok(self.sparse.clone())
+        recovery.sparse_faces()
     }
 
-    /// Active sets one after the other, until one confirms itself. If its answer does not pass, sparse factors take the place of dense
+    /// Up to `most` active sets one after the other, on up to `dense` rows and modes by dense factors, until one confirms itself. If its answer does not pass, sparse factors take the place of dense
     /// ones from the beginning on, since the point may have lost its digits.
-    fn follow(&mut self, mut active: Vec<bool>, mut point: SplitPoint) -> Result<()> {
-        let mut dense = self.recovery.faces.direct.limit;
+    fn follow(
+        &mut self,
+        mut active: Vec<bool>,
+        mut point: SplitPoint,
+        (mut dense, most): (usize, usize),
+    ) -> Result<()> {
         let mut start = (!self.passed && dense > 0).then(|| point.clone());
         let mut sets = Pivots::default();
-        while sets.go_on_with(&active) {
+        let before = self.ending.solution.counts.direct;
+        while sets.go_on_with(&active) && self.ending.solution.counts.direct - before < most {
             let Some(undetermined) = self.on_face(&mut point, &active, dense)? else { break };
             self.ending.solution.counts.direct += 1;
             let next = point.active(self.recovery);
             self.keep(&point, undetermined, if next == active { is_no_worse } else { is_better })?;
-            if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
+            self.done.settled = next == active || self.ending.judgement.certificate.worst() <= ROUNDING;
+            if self.done.settled && next != active && !self.delicate {
                 break;
             }
             if next != active {
@@ -154,7 +177,7 @@ impl<'a> Finish<'a, '_> {
     /// Corrects on one face, up to `dense` rows and modes by dense factors; the number of motions that it leaves open. None: it
     /// has no factor.
     fn on_face(&mut self, point: &mut SplitPoint, active: &[bool], dense: usize) -> Result<Option<usize>> {
-        let Faces { qp, direct } = &self.recovery.faces;
+        let Faces { qp, direct, .. } = &self.recovery.faces;
         point.hold(active);
         let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
         if rows.len() + point.alpha.len() > dense {
@@ -259,7 +282,7 @@ mod tests {
             let recovery = &judge.recovery;
             for x in [[2.0 * (1.0 + 1e-6), 0.0], [2.0 * (1.0 + 1e-6), 1e-12]] {
                 let mut ending = recovery.ending(Solution { x: x.to_vec(), ..solved.clone() }).unwrap();
-                assert!(finish(recovery, &mut ending, true).unwrap().replaced, "{x:?}");
+                assert!(finish(recovery, &mut ending, Effort::All).unwrap().replaced, "{x:?}");
                 assert_eq!(ending.solution.x, [2.0, 0.0]);
                 assert_eq!(
                     (ending.recovered.u.as_slice(), ending.recovered.lambda.as_slice()),
@@ -287,7 +310,7 @@ mod tests {
                     delicate: true,
                     passed: true,
                     negative,
-                    sparse: None,
+
                     done: Finished::default(),
                 };
                 finish.correct(&mut point, FaceSolver::Dense(&face)).unwrap();

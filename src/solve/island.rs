@@ -9,7 +9,7 @@ use crate::model::{Accuracy, Model};
 use crate::platform::{interrupt, threads};
 use crate::progress::{Steps, Stops, Voice};
 use crate::qp::paper::Units;
-use crate::qp::{self, Direct, Rung, Solution, Tries, Verdict};
+use crate::qp::{self, Direct, Effort, Rung, Solution, Tries, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::{Contradictions, Unheld};
@@ -152,7 +152,7 @@ fn attempt(
     let (settings, ready) = (&case.model.settings, case.ready);
     let f = Interruptible::new(&ready.dual, ready.product_threads(case.threads()));
     let (qp, direct) = (dual.qp(ready, &f), direct(case)?);
-    let mut judge = Certifier::new(Recovery::new(case, dual, Faces { qp, direct })?);
+    let mut judge = Certifier::new(Recovery::new(case, dual, Faces::new(qp, direct))?);
     let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
     let solution = match parameters(settings) {
         Some(given) if given.units == Units::Printed && !case.has_friction() => {
@@ -184,7 +184,7 @@ fn attempt(
     let finished = is_solved
         && is_to_finish(settings, recovery, &ending, spoilt.is_some())
         && (finished_at_rest(recovery, &mut ending, spoilt)?
-            || finish(recovery, &mut ending, false)?.replaced);
+            || finish(recovery, &mut ending, Effort::AllSets)?.replaced);
     let slide = if finished { interrupt::never(|| recovery.slides(&ending))? } else { slides }.worst();
     let passed = ending.judgement.certificate.passed();
     let mut outcome = match outcome(case, dual, &ending.solution)? {
@@ -225,7 +225,7 @@ fn attempt(
 /// Corrects the answer of least travel that a far way has spoilt; whether it passes and replaces the other.
 fn finished_at_rest(recovery: &Recovery, ending: &mut Ending, spoilt: Option<Ending>) -> Result<bool> {
     let Some(mut rest) = spoilt else { return Ok(false) };
-    finish(recovery, &mut rest, false)?;
+    finish(recovery, &mut rest, Effort::AllSets)?;
     let passes = rest.judgement.certificate.passed();
     if passes {
         *ending = rest;

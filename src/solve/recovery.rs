@@ -1,6 +1,8 @@
 //! From a point of the dual problem of one island to the answer in the units of the host (17), the residuals of loads and
 //! gaps, and the certificate.
 
+use std::sync::OnceLock;
+
 use crate::certificate::{certify, BodyData, Candidate, Data, Judgement, NOISE};
 use crate::constraints::RowKind;
 use crate::error::Result;
@@ -13,6 +15,7 @@ use crate::qp::{Direct, Qp, Solution};
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::scaled::Scaled;
+use crate::solve::sparse_face::SparseFaces;
 
 /// Displacements and multipliers in the units of the host.
 #[derive(Clone)]
@@ -34,6 +37,19 @@ impl Recovered {
 pub struct Faces<'a> {
     pub qp: Qp<'a>,
     pub direct: Direct<'a>,
+    /// Sparse factors, once asked for; none if the island has none.
+    sparse: OnceLock<Option<SparseFaces<'a>>>,
+}
+
+impl<'a> Faces<'a> {
+    pub fn new(qp: Qp<'a>, direct: Direct<'a>) -> Self {
+        Self { qp, direct, sparse: OnceLock::new() }
+    }
+
+    /// Multiplications of a sparse factorisation, once known; infinite if there is none.
+    pub fn sparse_work(&self) -> Option<f64> {
+        Some(self.sparse.get()?.as_ref().map_or(f64::INFINITY, SparseFaces::work))
+    }
 }
 
 /// The end of a solve.
@@ -86,6 +102,15 @@ impl<'a> Recovery<'a> {
             soft,
             friction: case.has_friction(),
         })
+    }
+
+    /// The sparse factors of faces; none if the island has none.
+    pub fn sparse_faces(&self) -> Result<Option<&SparseFaces<'a>>> {
+        if self.faces.sparse.get().is_none() {
+            let made = SparseFaces::of(self.ready, &self.data)?;
+            return Ok(self.faces.sparse.get_or_init(|| made).as_ref());
+        }
+        Ok(self.faces.sparse.get().and_then(Option::as_ref))
     }
 
     /// (17) and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups. `deformed`: u without its

@@ -4,7 +4,8 @@
 use crate::error::Result;
 use crate::progress::Steps;
 use crate::qp::{
-    AcceptanceTest, Counts, DirectOnRows, Judged as OnRows, Mended, Qp, Restricted, Rung, Solution, Verdict,
+    AcceptanceTest, Counts, DirectOnRows, Effort, Judged as OnRows, Mended, Qp, Restricted, Rung, Solution,
+    Verdict,
 };
 use crate::solve::case::Case;
 use crate::solve::certifier::{Assumed, Certifier, Judged};
@@ -69,7 +70,7 @@ pub fn solve_in_rounds<'a>(
             Ok(Next::Step(next)) => next,
             Ok(Next::Mend(next)) if !Rung::Mend.is_tried() => next,
             Ok(Next::Mend(next)) => {
-                let mended = judge.mended(&solution, true).and_then(|found| match found {
+                let mended = judge.mended(&solution, Effort::All).and_then(|found| match found {
                     Mended::Accepted(mended) => {
                         Ok(rounds.search(&judge.recovery).is_minimum(&step, &mended)?.then_some(mended))
                     }

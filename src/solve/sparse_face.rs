@@ -10,6 +10,7 @@
 use std::sync::Arc;
 
 use crate::body;
+use crate::certificate::Data;
 use crate::error::Result;
 use crate::linalg::cholesky::{Analysis, Cholesky};
 use crate::linalg::sparse::gram::Gram;
@@ -18,8 +19,9 @@ use crate::linalg::{Csr, Symmetric};
 use crate::platform::memory::{copied, zeros};
 use crate::platform::{interrupt, tally};
 use crate::qp::{Interior, Inverse, Point, Stiffness};
+use crate::setup::Ready;
 use crate::solve::gaps::Gaps;
-use crate::solve::recovery::Recovery;
+use crate::solve::scaled::Scaled;
 
 /// 1/c is this multiple of the stiffest unknown of the row: much more loses digits of K, much less takes many corrections.
 const STIFFER: f64 = 1e3;
@@ -88,17 +90,17 @@ impl Stiffness for &SparseFaces<'_> {
 
 impl<'a> SparseFaces<'a> {
     /// None if some K is not given by its entries, or rows are wide.
-    pub fn of(recovery: &Recovery<'a>) -> Result<Option<Self>> {
-        let own = &recovery.ready.rows;
+    pub fn of(ready: &'a Ready, data: &Data<'a>) -> Result<Option<Self>> {
+        let own = &ready.rows;
         let (rows, metric) = (&own.matrix, &own.metric[..]);
         let wide = |i: usize| rows.ptr[i + 1] - rows.ptr[i] > WIDE;
         if (0..rows.rows()).any(wide) {
             return Ok(None);
         }
         let gram = Gram::of(rows)?;
-        let (pattern, unit) = (gram.pattern(), recovery.ready.island.unit);
+        let (pattern, unit) = (gram.pattern(), ready.island.unit);
         let mut k = Symmetric::with_room(metric.len(), pattern.col.len(), WHAT)?;
-        for body in &recovery.data.bodies {
+        for body in &data.bodies {
             let body::Stiffness::Matrix(own) = body.stiffness else { return Ok(None) };
             for i in 0..own.order() {
                 let stiff = own.lower_row(i).map(|(j, v)| (body.start + j, v / unit));
@@ -110,8 +112,13 @@ impl<'a> SparseFaces<'a> {
             rows.row(i).map(|(_, b)| b * b).fold(0.0, f64::max) / (STIFFER * stiffest)
         });
         let analysis = Arc::new(Analysis::new(&k, &vec![false; metric.len()])?);
-        let (least, compliance) = (least.collect(), &recovery.ready.dual.compliance[..rows.rows()]);
+        let (least, compliance) = (least.collect(), &ready.dual.compliance[..rows.rows()]);
         Ok(Some(Self { rows, compliance, metric, least, gram, k, analysis }))
+    }
+
+    /// Multiplications of a factorisation.
+    pub fn work(&self) -> f64 {
+        self.analysis.work()
     }
 
     /// None if the matrix of this face is not positive semidefinite.
@@ -125,8 +132,8 @@ impl<'a> SparseFaces<'a> {
     }
 
     /// The point of an interior point method, and the rows that it shows without a force.
-    pub fn inside(&self, recovery: &Recovery) -> Result<Option<(Vec<bool>, Point)>> {
-        let (Gaps { dual, value, bounded, far, .. }, e) = (&recovery.scaled.gaps, &recovery.scaled.load);
+    pub fn inside(&self, scaled: &Scaled) -> Result<Option<(Vec<bool>, Point)>> {
+        let (Gaps { dual, value, bounded, far, .. }, e) = (&scaled.gaps, &scaled.load);
         let m = self.rows.rows();
         let held: Vec<bool> = (0..m).map(|i| far[i] || value[i] == f64::INFINITY).collect();
         let gap: Vec<f64> = (0..m).map(|i| if held[i] { 0.0 } else { dual[i] }).collect();

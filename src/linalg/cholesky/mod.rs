@@ -19,7 +19,7 @@ mod renewal;
 mod schur;
 mod triangular;
 
-pub use analysis::ordering::nested_dissection;
+pub use analysis::ordering::order_of_elimination;
 pub use analysis::Analysis;
 pub use factor::{Breakdown, Cholesky};
 pub use inverse_form::inverse_form;

@@ -7,7 +7,7 @@ use crate::qp::friction::face::Face;
 use crate::qp::friction::nearest::Projected;
 use crate::qp::friction::newton::{Point, Run, RHO};
 use crate::qp::friction::{FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart};
-use crate::qp::{AcceptanceTest, Counts, Mended, Observer, Rung, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Effort, Mended, Observer, Rung, Solution, Verdict};
 
 /// Below this merit the answer may be as accurate as rounding allows.
 const NEAR: f64 = 1e-7;
@@ -137,7 +137,8 @@ impl<'a> Run<'a, '_> {
         let (x, alpha, counts) = (answer.x.clone(), answer.alpha.clone(), Counts::default());
         let refused =
             Solution { x, alpha, undetermined: 0, scale: self.scale, verdict: Verdict::Inaccurate, counts };
-        let Mended::Accepted(Solution { x, alpha, counts, .. }) = judge.mended(&refused, false)? else {
+        let Mended::Accepted(Solution { x, alpha, counts, .. }) = judge.mended(&refused, Effort::AllSets)?
+        else {
             return Ok(false);
         };
         self.counts = self.counts + counts;

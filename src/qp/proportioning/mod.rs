@@ -14,7 +14,7 @@ mod iterate;
 mod steps;
 mod stop;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::vector::{dot, norm, norm_max, ratio, NOISE};
 use crate::platform::interrupt;
 use crate::qp::between_solves::BetweenSolves;
@@ -22,7 +22,8 @@ use crate::qp::coarse::Coarse;
 use crate::qp::friction::{unheld, Cones};
 use crate::qp::projection::project;
 use crate::qp::{
-    AcceptanceTest, Counts, Limits, Observer, Qp, Rung, Solution, StepKind, StepReport, Verdict,
+    AcceptanceTest, Counts, Effort, Limits, Mended, Observer, Qp, Rung, Solution, StepKind, StepReport,
+    Verdict,
 };
 use iterate::Iterate;
 use steps::Step;
@@ -111,15 +112,30 @@ fn proportioning(
     // S7
     let scale = judge.scale(&it.x, &it.alpha)?;
     let stop = Stop::new(limits.tolerance * scale);
-    let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
+    let ended = run(&mut it, stop, limits, judge, observer)
+        .or_else(|error| Ok::<_, Error>(Ended::Here(Verdict::of_refusal(error)?)))?;
     it.counts.coarse_solves = it.coarse.solves;
     it.counts.coarse_factorisations = it.coarse.factorisations;
+    it.qp.kept.iter().for_each(|kept| kept.keep_directions(std::mem::take(&mut it.kept)));
+    let verdict = match ended {
+        Ended::Here(verdict) => verdict,
+        Ended::Mended(solution) => {
+            let counts = Counts { direct: solution.counts.direct, ..it.counts };
+            return Ok(Solution { scale, counts, ..solution });
+        }
+    };
     let none = NO_FORCE * norm_max(&it.x);
     let held: Vec<bool> = it.x.iter().zip(it.qp.bounded).map(|(x, bounded)| *bounded && *x <= none).collect();
     let open = it.coarse.on(&held).map(|face| face.deficiency());
     let (undetermined, verdict) = verdict.with(open, 0)?;
-    it.qp.kept.iter().for_each(|kept| kept.keep_directions(std::mem::take(&mut it.kept)));
     Ok(Solution { undetermined, scale, x: it.x, alpha: it.alpha, verdict, counts: it.counts })
+}
+
+enum Ended {
+    /// At the point of the iterate.
+    Here(Verdict),
+    /// With an answer by better data, correct to rounding.
+    Mended(Solution),
 }
 
 fn run(
@@ -128,7 +144,8 @@ fn run(
     limits: Limits,
     judge: &mut dyn AcceptanceTest,
     observer: &mut dyn Observer,
-) -> Result<Verdict> {
+) -> Result<Ended> {
+    let mut efforts = [Effort::FewSets, Effort::Interior].into_iter().peekable();
     loop {
         // P1 of docs/method.md: the stop
         let small = stop.residual + stop.noise * it.noise();
@@ -136,11 +153,11 @@ fn run(
         if it.split.norm() <= small || stop.plateau(it) {
             it.rebalance()?;
             if judge.accepts(&it.x, &it.alpha)? {
-                return Ok(Verdict::Solved);
+                return Ok(Ended::Here(Verdict::Solved));
             }
             let missed = judge.missed();
             if stop.stays(missed) && judge.has_better_data() {
-                return Ok(Verdict::Inaccurate);
+                return Ok(Ended::Here(Verdict::Inaccurate));
             }
             if stop.tighten_by(missed) {
                 continue;
@@ -148,7 +165,7 @@ fn run(
             it.refresh()?;
             if it.split.norm() <= small || stop.plateau(it) {
                 match stop.tighten(judge.accepts(&it.x, &it.alpha)?) {
-                    Some(verdict) => return Ok(verdict),
+                    Some(verdict) => return Ok(Ended::Here(verdict)),
                     None => continue,
                 }
             }
@@ -160,22 +177,31 @@ fn run(
             Step::Vertex { alpha } => {
                 if let Some(verdict) = stop.tighten(judge.accepts(&it.x, &alpha)?) {
                     it.alpha = alpha;
-                    return Ok(verdict);
+                    return Ok(Ended::Here(verdict));
                 }
                 StepKind::Proportioning
             }
             Step::Unbounded { .. } | Step::Stuck if judge.accepts(&it.x, &it.alpha)? => {
-                return Ok(Verdict::Solved);
+                return Ok(Ended::Here(Verdict::Solved));
             }
-            Step::Unbounded { p } => return Ok(Verdict::Unbounded { p }),
-            Step::Stuck => return Ok(Verdict::Stalled),
+            Step::Unbounded { p } => return Ok(Ended::Here(Verdict::Unbounded { p })),
+            Step::Stuck => return Ok(Ended::Here(Verdict::Stalled)),
             Step::ConjugateGradient => StepKind::ConjugateGradient,
             Step::Expansion => StepKind::Expansion,
             Step::Proportioning => StepKind::Proportioning,
         };
         observer.step(&it.progress(kind, small))?;
+        // P12: better data, once steps have cost as much
+        let pays = |effort: &Effort| judge.pays_after(*effort).is_some_and(|pays| pays <= it.counts.steps());
+        if let Some(effort) = efforts.peek().copied().filter(pays) {
+            match judge.mended(&it.solution(), effort)? {
+                Mended::Accepted(solution) => return Ok(Ended::Mended(solution)),
+                Mended::Dear => {}
+                _ => drop(efforts.next()),
+            }
+        }
         if it.counts.steps() >= limits.steps {
-            return Ok(Verdict::StepLimit);
+            return Ok(Ended::Here(Verdict::StepLimit));
         }
     }
 }
@@ -184,6 +210,12 @@ fn run(
 mod tests;
 
 impl Iterate<'_> {
+    /// The present point.
+    fn solution(&self) -> Solution {
+        let (x, alpha, counts) = (self.x.clone(), self.alpha.clone(), self.counts);
+        Solution { x, alpha, undetermined: 0, scale: 0.0, verdict: Verdict::StepLimit, counts }
+    }
+
     fn progress(&self, kind: StepKind, small: f64) -> StepReport<'_> {
         StepReport::new(kind, &self.counts, &self.split, self.theta(), small)
     }

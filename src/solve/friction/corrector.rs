@@ -32,7 +32,7 @@ impl Recovery<'_> {
 
     /// None if too many rows may carry a force. Those marked in `open` carry none.
     pub fn friction_step(&self, open: &[bool], at: Corrected) -> Result<Option<Step>> {
-        let Faces { qp, direct } = &self.faces;
+        let Faces { qp, direct, .. } = &self.faces;
         let rows: Vec<usize> = (0..open.len()).filter(|&i| !open[i]).collect();
         let near = Restricted::new(*qp, &rows);
         let cones = cones(self.ready, &self.scaled.gaps, &rows)?;

@@ -102,7 +102,7 @@ fn failed(status: i32) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::cholesky::analysis::ordering::built_in;
+    use crate::linalg::cholesky::analysis::dissection;
     use crate::linalg::cholesky::analysis::supernodes::Supernodes;
     use crate::linalg::sparse::graph::Graph;
 
@@ -144,7 +144,8 @@ mod tests {
         let mut graph = Graph { ptr: vec![0], adj: full.concat() };
         full.iter().for_each(|row| graph.ptr.push(graph.ptr[graph.ptr.len() - 1] + row.len()));
         let fill = |order: Vec<usize>| Supernodes::of(&graph, &order).unwrap().1.values() as f64;
-        let (own, default) = (fill(dissect(&ptr, &adj).unwrap()), fill(built_in(&ptr, &adj).unwrap()));
+        let (own, default) =
+            (fill(dissect(&ptr, &adj).unwrap()), fill(dissection::dissect(&ptr, &adj).unwrap()));
         assert!(own < 1.25 * default && default < 1.5 * own, "{own}, default {default}");
     }
 

@@ -6,6 +6,7 @@ mod dissection;
 pub mod elimination;
 #[cfg(feature = "metis")]
 mod metis;
+mod minimum_degree;
 pub mod ordering;
 pub mod subtrees;
 pub mod supernodes;
@@ -15,7 +16,7 @@ use crate::linalg::sparse::graph::Graph;
 use crate::linalg::Symmetric;
 use crate::platform::memory::{filled, headroom, Headroom};
 use elimination::NONE;
-use ordering::nested_dissection;
+use ordering::order_of_elimination;
 use supernodes::Supernodes;
 
 /// Upper bound of the bytes for ordering and symbolic analysis, per dof and per entry of the lower triangle: grids of all
@@ -36,7 +37,7 @@ impl Analysis {
     pub fn new(matrix: &Symmetric, held: &[bool]) -> Result<Self> {
         let _room = analysis_headroom(matrix)?;
         let graph = Graph::of(matrix)?;
-        let order = nested_dissection(&graph, held)?;
+        let order = order_of_elimination(&graph, held)?;
         Self::in_order(&graph, &order)
     }
 
@@ -46,7 +47,7 @@ impl Analysis {
         let _room = analysis_headroom(matrix)?;
         let mut is_last = vec![false; matrix.order()];
         last.iter().for_each(|&dof| is_last[dof] = true);
-        let mut order = nested_dissection(&Graph::of(graph)?, &is_last)?;
+        let mut order = order_of_elimination(&Graph::of(graph)?, &is_last)?;
         order.extend(last);
         Self::in_order(&Graph::of(matrix)?, &order)
     }
@@ -63,6 +64,11 @@ impl Analysis {
         let mut position = filled(graph.order(), NONE, "the order of a body")?;
         order.iter().enumerate().for_each(|(at, &dof)| position[dof] = at);
         Ok(Self { order, position, nodes })
+    }
+
+    /// Multiplications of a factorisation.
+    pub fn work(&self) -> f64 {
+        self.nodes.nodes().map(|node| node.work()).sum()
     }
 
     /// Entries of L.

@@ -1,131 +1,131 @@
-//! Fill-reducing order of the unknowns: nested dissection of the graph of nodes, each connected part separately.
+//! Fill-reducing order of the unknowns, each connected part of the graph of nodes separately: by minimum degree, and where
+//! elimination in this order is expensive, by nested dissection.
 
 use crate::error::{Error, Kind, Result};
-#[cfg(any(test, not(feature = "metis")))]
-use crate::linalg::cholesky::analysis::dissection;
+#[cfg(not(feature = "metis"))]
+use crate::linalg::cholesky::analysis::dissection::dissect;
 #[cfg(feature = "metis")]
 use crate::linalg::cholesky::analysis::metis::dissect;
+use crate::linalg::cholesky::analysis::minimum_degree::minimum_degree;
 use crate::linalg::sparse::graph::{joined, Graph};
 use crate::platform::memory::{filled, reserved};
-#[cfg(not(feature = "metis"))]
-use built_in as dissect;
 
-/// The free dofs in the order of their elimination. The graph of nodes (dofs with identical neighbours) is dissected
+const WHAT: &str = "the ordering of a body";
+/// Dissection takes as long as this number of multiplications per entry of the graph, 25 times as long as minimum degree.
+const DISSECTION: f64 = 500.0;
+
+/// The free dofs in the order of their elimination. The graph of nodes (dofs with identical neighbours) is ordered
 /// instead of that of dofs: it is 3 x smaller in 3D, and supernodes are not split.
-pub fn nested_dissection(graph: &Graph, held: &[bool]) -> Result<Vec<usize>> {
+pub fn order_of_elimination(graph: &Graph, held: &[bool]) -> Result<Vec<usize>> {
     let (node, first) = graph.nodes()?;
-    let order = order_nodes(graph, &node, &first)?;
-    let mut rank = filled(order.len(), 0, "the ordering of a body")?;
+    let order = Nodes::of(graph, &node, &first)?.order()?;
+    let mut rank = filled(order.len(), 0, WHAT)?;
     order.iter().enumerate().for_each(|(at, &node)| rank[node] = at);
-    let mut dofs = reserved(node.len(), "the ordering of a body")?;
+    let mut dofs = reserved(node.len(), WHAT)?;
     dofs.extend((0..node.len()).filter(|&dof| !held[dof]));
     dofs.sort_unstable_by_key(|&dof| (rank[node[dof] as usize], dof));
     Ok(dofs)
 }
 
-/// Dissects the quotient graph of the nodes.
-fn order_nodes(graph: &Graph, node: &[u32], first: &[usize]) -> Result<Vec<usize>> {
-    let too_large = || Error::new(Kind::Overflow, "the graph of a body exceeds 2^31 edges");
-    let (mut ptr, mut adj, mut row) = (vec![0i32], Vec::new(), Vec::new());
-    for (own, &dof) in first.iter().enumerate() {
-        row.clear();
-        row.extend(graph.neighbours(dof).iter().map(|&j| node[j as usize] as i32));
-        row.sort_unstable();
-        row.dedup();
-        adj.extend(row.iter().filter(|&&other| other as usize != own));
-        ptr.push(i32::try_from(adj.len()).map_err(|_| too_large())?);
-    }
-    dissect_sparse(&ptr, &adj)
+/// The quotient graph of nodes: the neighbours of each, without itself, and the numbers of dofs.
+struct Nodes {
+    ptr: Vec<i32>,
+    adj: Vec<i32>,
+    dofs: Vec<u32>,
 }
 
-/// Nodes with more neighbours come last, as in AMD: dissection around such a node costs the square of their number.
-fn most_neighbours(nodes: usize) -> usize {
-    (10 * nodes.isqrt()).max(1000)
-}
-
-/// Dissects the graph without the nodes that have too many neighbours, and appends these.
-fn dissect_sparse(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
-    let nodes = ptr.len() - 1;
-    let is_dense = |&i: &usize| (ptr[i + 1] - ptr[i]) as usize > most_neighbours(nodes);
-    let (dense, sparse): (Vec<usize>, Vec<usize>) = (0..nodes).partition(is_dense);
-    if dense.is_empty() {
-        return dissect_parts(ptr, adj);
-    }
-    let (from, to) = among(&sparse, ptr, adj, &mut vec![None; nodes])?;
-    Ok(dissect_parts(&from, &to)?.into_iter().map(|k| sparse[k]).chain(dense).collect())
-}
-
-/// Dissects every connected part separately: the search for parts below a separator costs the product of the numbers of
-/// parts and nodes. For single nodes, and for complete graphs, the order does not matter.
-fn dissect_parts(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
-    let nodes = ptr.len() - 1;
-    let around = |i: usize| adj[ptr[i] as usize..ptr[i + 1] as usize].iter().map(|&j| j as usize);
-    let (part, count) = joined(nodes, (0..nodes).map(|i| std::iter::once(i).chain(around(i))));
-    if count == 1 && !is_complete(nodes, adj) {
-        return dissect(ptr, adj);
-    }
-    let mut order: Vec<usize> = reserved(nodes, "the ordering of a body")?;
-    order.extend(0..nodes);
-    order.sort_by_key(|&i| part[i]);
-    let mut number = filled(nodes, None, "the ordering of a body")?;
-    for own in order.chunk_by_mut(|&i, &j| part[i] == part[j]) {
-        let (from, to) = among(own, ptr, adj, &mut number)?;
-        if !is_complete(own.len(), &to) {
-            let sequence: Vec<usize> = dissect(&from, &to)?.into_iter().map(|k| own[k]).collect();
-            own.copy_from_slice(&sequence);
+impl Nodes {
+    fn of(graph: &Graph, node: &[u32], first: &[usize]) -> Result<Self> {
+        let too_large = || Error::new(Kind::Overflow, "the graph of a body exceeds 2^31 edges");
+        let (mut ptr, mut adj, mut row) = (vec![0i32], Vec::new(), Vec::new());
+        for (own, &dof) in first.iter().enumerate() {
+            row.clear();
+            row.extend(graph.neighbours(dof).iter().map(|&j| node[j as usize] as i32));
+            row.sort_unstable();
+            row.dedup();
+            adj.extend(row.iter().filter(|&&other| other as usize != own));
+            ptr.push(i32::try_from(adj.len()).map_err(|_| too_large())?);
         }
+        let mut dofs = filled(first.len(), 0, WHAT)?;
+        node.iter().for_each(|&node| dofs[node as usize] += 1);
+        Ok(Self { ptr, adj, dofs })
     }
-    Ok(order)
-}
 
-/// Whether all nodes are neighbours of each other.
-fn is_complete(nodes: usize, adj: &[i32]) -> bool {
-    adj.len() == nodes * nodes.saturating_sub(1)
-}
-
-/// The graph of some nodes; `number`: work array with an entry per node of the whole graph, none is set before and after.
-fn among(
-    own: &[usize],
-    ptr: &[i32],
-    adj: &[i32],
-    number: &mut [Option<i32>],
-) -> Result<(Vec<i32>, Vec<i32>)> {
-    own.iter().enumerate().for_each(|(k, &i)| number[i] = Some(k as i32));
-    let around = |i: usize| &adj[ptr[i] as usize..ptr[i + 1] as usize];
-    let mut from = reserved(own.len() + 1, "the ordering of a body")?;
-    let mut to = reserved(own.iter().map(|&i| around(i).len()).sum(), "the ordering of a body")?;
-    from.push(0);
-    for &i in own {
-        to.extend(around(i).iter().filter_map(|&j| number[j as usize]));
-        from.push(to.len() as i32);
+    fn count(&self) -> usize {
+        self.dofs.len()
     }
-    own.iter().for_each(|&i| number[i] = None);
-    Ok((from, to))
-}
 
-/// From this number of nodes on, the separators of feral-metis become too large: 1.2 times the work with METIS for a cube
-/// of 50 thousand nodes, 1.5 times for 100 thousand.
-#[cfg(any(test, not(feature = "metis")))]
-const LARGE: usize = 10_000;
-
-/// The order without METIS: small graphs by the crate feral-metis, large graphs by the library's own separators.
-#[cfg(any(test, not(feature = "metis")))]
-pub fn built_in(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
-    if ptr.len() <= LARGE {
-        feral(ptr, adj)
-    } else {
-        dissection::dissect(ptr, adj, feral)
+    fn around(&self, i: usize) -> &[i32] {
+        &self.adj[self.ptr[i] as usize..self.ptr[i + 1] as usize]
     }
-}
 
-/// The order by the crate feral-metis; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`.
-#[cfg(any(test, not(feature = "metis")))]
-fn feral(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
-    let failed = |why: String| Error::new(Kind::Internal, format!("nested dissection failed: {why}"));
-    let pattern = feral_metis::CscPattern::new(ptr.len() - 1, ptr, adj);
-    let pattern = pattern.ok_or_else(|| failed("no graph".into()))?;
-    let order = feral_metis::metis_order(&pattern).map_err(|e| failed(format!("{e:?}")))?;
-    Ok(order.into_iter().map(|node| node as usize).collect())
+    /// Whether all nodes are neighbours of each other.
+    fn is_complete(&self) -> bool {
+        self.adj.len() == self.count() * self.count().saturating_sub(1)
+    }
+
+    /// Nodes with more neighbours come last, as in AMD: dissection around such a node costs the square of their number.
+    fn most_neighbours(&self) -> usize {
+        (10 * self.count().isqrt()).max(1000)
+    }
+
+    /// Orders the graph without the nodes that have too many neighbours, and appends these.
+    fn order(&self) -> Result<Vec<usize>> {
+        let is_dense = |&i: &usize| self.around(i).len() > self.most_neighbours();
+        let (dense, sparse): (Vec<usize>, Vec<usize>) = (0..self.count()).partition(is_dense);
+        if dense.is_empty() {
+            return self.order_parts();
+        }
+        let rest = self.among(&sparse, &mut vec![None; self.count()])?;
+        Ok(rest.order_parts()?.into_iter().map(|k| sparse[k]).chain(dense).collect())
+    }
+
+    /// Orders every connected part separately: the search for parts below a separator costs the product of the numbers of
+    /// parts and nodes. For single nodes, and for complete graphs, the order does not matter.
+    fn order_parts(&self) -> Result<Vec<usize>> {
+        let nodes = self.count();
+        let with = |i: usize| std::iter::once(i).chain(self.around(i).iter().map(|&j| j as usize));
+        let (part, count) = joined(nodes, (0..nodes).map(with));
+        if count == 1 && !self.is_complete() {
+            return self.order_part();
+        }
+        let mut order: Vec<usize> = reserved(nodes, WHAT)?;
+        order.extend(0..nodes);
+        order.sort_by_key(|&i| part[i]);
+        let mut number = filled(nodes, None, WHAT)?;
+        for own in order.chunk_by_mut(|&i, &j| part[i] == part[j]).filter(|own| own.len() > 2) {
+            let alone = self.among(own, &mut number)?;
+            if !alone.is_complete() {
+                let sequence: Vec<usize> = alone.order_part()?.into_iter().map(|k| own[k]).collect();
+                own.copy_from_slice(&sequence);
+            }
+        }
+        Ok(order)
+    }
+
+    fn order_part(&self) -> Result<Vec<usize>> {
+        let Self { ptr, adj, dofs } = self;
+        let (order, of_nodes) = minimum_degree(ptr, adj)?;
+        let each = dofs.iter().map(|&n| f64::from(n)).sum::<f64>() / self.count() as f64;
+        if of_nodes * each.powi(3) <= DISSECTION * adj.len() as f64 {
+            return Ok(order);
+        }
+        dissect(ptr, adj)
+    }
+
+    /// The graph of some nodes; `number`: work array with an entry per node of the whole graph, none is set before and after.
+    fn among(&self, own: &[usize], number: &mut [Option<i32>]) -> Result<Self> {
+        own.iter().enumerate().for_each(|(k, &i)| number[i] = Some(k as i32));
+        let mut ptr = reserved(own.len() + 1, WHAT)?;
+        let mut adj = reserved(own.iter().map(|&i| self.around(i).len()).sum(), WHAT)?;
+        ptr.push(0);
+        for &i in own {
+            adj.extend(self.around(i).iter().filter_map(|&j| number[j as usize]));
+            ptr.push(adj.len() as i32);
+        }
+        own.iter().for_each(|&i| number[i] = None);
+        Ok(Self { ptr, adj, dofs: own.iter().map(|&i| self.dofs[i]).collect() })
+    }
 }
 
 #[cfg(test)]
@@ -147,7 +147,7 @@ mod tests {
         let mut held = vec![false; n];
         held[7] = true;
         let graph = Graph::of(&Symmetric::new(ptr, col, val)).unwrap();
-        let mut order = nested_dissection(&graph, &held).unwrap();
+        let mut order = order_of_elimination(&graph, &held).unwrap();
         order.sort_unstable();
         assert_eq!(order, (0..n).filter(|&i| i != 7).collect::<Vec<_>>());
     }
@@ -172,7 +172,7 @@ mod tests {
     }
 
     fn order_of(graph: &Graph) -> Vec<usize> {
-        nested_dissection(graph, &vec![false; graph.order()]).unwrap()
+        order_of_elimination(graph, &vec![false; graph.order()]).unwrap()
     }
 
     /// Ratios of times, each the least of three, measured alternately: other load of the machine affects both.
@@ -229,7 +229,7 @@ mod tests {
         }
         let val = vec![1.0; col.len()];
         let graph = Graph::of(&Symmetric::new(ptr, col, val)).unwrap();
-        let order = nested_dissection(&graph, &vec![false; n]).unwrap();
+        let order = order_of_elimination(&graph, &vec![false; n]).unwrap();
         assert_eq!(order[n - 2..], [0, n / 2]);
     }
 }

@@ -193,7 +193,7 @@ impl RowMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::cholesky::analysis::ordering::nested_dissection;
+    use crate::linalg::cholesky::analysis::ordering::order_of_elimination;
     use crate::linalg::sparse::graph::Graph;
     use crate::linalg::Symmetric;
 
@@ -207,7 +207,7 @@ mod tests {
             ptr.push(col.len());
         }
         let graph = Graph::of(&Symmetric::new(ptr, col.clone(), vec![1.0; col.len()])).unwrap();
-        let order = nested_dissection(&graph, &vec![false; n * n]).unwrap();
+        let order = order_of_elimination(&graph, &vec![false; n * n]).unwrap();
         let nodes = &Supernodes::of(&graph, &order).unwrap().1;
         let len = |s: usize| 100 * nodes.node(s).rows.len();
         let children = |s: usize| (0..s).filter(move |&child| nodes.parent(child) == s);

@@ -1,5 +1,5 @@
-//! Nested dissection of large graphs: a separator is ordered last, after the two parts that it separates, which are
-//! ordered recursively; small parts are ordered by minimum degree.
+//! Nested dissection: a separator is ordered last, after the two parts that it separates, which are
+//! ordered recursively; small parts, and those that nothing divides, are ordered by minimum degree.
 
 mod bisection;
 mod coarsening;
@@ -12,6 +12,7 @@ use separator::{Separator, BETWEEN};
 use weighted::Weighted;
 
 use crate::error::Result;
+use crate::linalg::cholesky::analysis::minimum_degree::minimum_degree;
 use crate::platform::memory::filled;
 
 const WHAT: &str = "the ordering of a body";
@@ -26,12 +27,7 @@ struct Part {
 }
 
 /// Nodes in the order of their elimination; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`.
-/// Parts without a separator are ordered by `undivided`, which has equal arguments and results.
-pub fn dissect(
-    ptr: &[i32],
-    adj: &[i32],
-    undivided: impl Fn(&[i32], &[i32]) -> Result<Vec<usize>>,
-) -> Result<Vec<usize>> {
+pub fn dissect(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     let nodes = ptr.len() - 1;
     let mut order = filled(nodes, 0, WHAT)?;
     let mut number = filled(nodes, u32::MAX, WHAT)?;
@@ -46,7 +42,7 @@ pub fn dissect(
             continue;
         } else {
             let (ptr, adj) = signed(&part.graph);
-            part.own = undivided(&ptr, &adj)?.into_iter().map(|v| part.own[v]).collect();
+            part.own = minimum_degree(&ptr, &adj)?.0.into_iter().map(|v| part.own[v]).collect();
         }
         put(part.own.into_iter(), &mut order[part.begin..part.begin + size]);
     }
@@ -105,10 +101,6 @@ mod tests {
         (ptr, adj)
     }
 
-    fn none_left(_: &[i32], _: &[i32]) -> Result<Vec<usize>> {
-        panic!("a part was not divided")
-    }
-
     /// By hand: the separator of a box is at least the number of nodes of a plane.
     #[test]
     fn separators_of_boxes_are_planes() {
@@ -145,19 +137,20 @@ mod tests {
         let mut ends = vec![0];
         (0..3000).for_each(|i| ends.push(ends[i as usize] + star(i).len() as i32));
         for (ptr, adj) in [(both, twice(&adj, n)), (ends, stars), (ptr, adj)] {
-            let mut order = dissect(&ptr, &adj, none_left).unwrap();
+            let mut order = dissect(&ptr, &adj).unwrap();
             order.sort_unstable();
             assert!(order.into_iter().eq(0..ptr.len() - 1));
         }
     }
 
     #[test]
-    fn parts_that_nothing_divides_are_left_to_the_other_order() {
+    fn parts_that_nothing_divides_have_an_order_too() {
         let n = 150;
         let ptr: Vec<i32> = (0..=n).map(|i| i * (n - 1)).collect();
         let adj: Vec<i32> = (0..n).flat_map(|i| (0..n).filter(move |&j| j != i)).collect();
-        let backwards = |ptr: &[i32], _: &[i32]| Ok((0..ptr.len() - 1).rev().collect());
-        assert!(dissect(&ptr, &adj, backwards).unwrap().into_iter().eq((0..n as usize).rev()));
+        let mut order = dissect(&ptr, &adj).unwrap();
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..n as usize));
     }
 
     /// Nodes 0 to 2 of a path; node 0 has three further neighbours, outside.
