@@ -196,7 +196,7 @@ impl Members {
 
 /// The islands of a problem, by their first bodies. Rows without entries and rows that never close, `c = +infinity`, are
 /// in none of them.
-pub fn islands(model: &Model) -> Result<Vec<Island>> {
+pub fn islands(model: &Model) -> Result<Vec<Box<Island>>> {
     let (bodies, offsets) = (model.bodies.len(), &model.offsets);
     let body_of = |j: usize| offsets[1..].partition_point(|end| *end <= j);
     let all = [&model.contact, &model.equalities];
@@ -221,7 +221,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         of_body.iter_mut().for_each(|island| *island = joint[*island]);
         count = all;
     }
-    let mut islands = vec![Island::empty(); count];
+    let mut islands = vec![Box::new(Island::empty()); count];
     let mut start = filled(bodies, 0, WHAT)?;
     for (island, bodies) in islands.iter_mut().zip(members(count, of_body.iter().copied().zip(0..))) {
         let mut end = 0;
@@ -285,7 +285,7 @@ fn unknowns_of(model: &Model, node: usize) -> impl Iterator<Item = usize> + '_ {
 fn nodes(
     model: &Model,
     acting: &[usize],
-    islands: &mut [Island],
+    islands: &mut [Box<Island>],
     island_of: impl Fn(usize) -> usize,
     place: impl Fn(usize) -> usize + Copy,
 ) -> Result<()> {
