@@ -1,10 +1,10 @@
 //! The bodies that are solved: connected components and pieces, with the data of the host's body restricted to them.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::body::{pattern_key, same_matrix, value_key, Body};
 use crate::error::{Error, Kind, Result};
+use crate::linalg::hash::{hash, Shared};
 use crate::linalg::Symmetric;
 use crate::mesh::{Mesh, Piece};
 use crate::model::{GivenBody, Joint, Model, Part, Parts};
@@ -120,15 +120,10 @@ impl Split<'_> {
         let left_out = &self.loose[first_loose..];
         let blocks = components.blocks(k, |i| left_out.binary_search(&(self.first + i)).is_ok())?;
         let mut made = reserved(blocks.len(), WHAT)?;
-        let mut known: HashMap<_, Vec<Arc<Symmetric>>> = HashMap::new();
+        let mut known = Shared::default();
         for Component { dofs, stiffness } in blocks {
-            // equal components share their matrix
-            let alike = known.entry([pattern_key(&stiffness), value_key(&stiffness)]).or_default();
-            let at = alike.iter().position(|of| same_matrix(of, &stiffness)).unwrap_or(alike.len());
-            if at == alike.len() {
-                alike.push(Arc::new(stiffness));
-            }
-            let stiffness = Arc::clone(&alike[at]);
+            let key = hash(pattern_key(&stiffness), std::iter::once(value_key(&stiffness)));
+            let stiffness = known.share(key, stiffness, same_matrix);
             let null_space = self.given.body.null_space.as_ref();
             let null_space = null_space.map(|given| given.on(&dofs, &stiffness).map(Box::new)).transpose()?;
             let own = Body { null_space, ..self.part_of(&dofs, stiffness)? };

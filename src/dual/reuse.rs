@@ -12,7 +12,7 @@ use crate::linalg::{Csr, Operator, Packed};
 /// `F_p` and the rows of B over body p for which it was made.
 pub struct Kept {
     rows: Arc<Csr>,
-    operator: Packed,
+    operator: Arc<Packed>,
 }
 
 /// Counts of the columns of dual operators, one for each row and body that it touches.
@@ -34,7 +34,7 @@ pub(super) enum Reuse {
 }
 
 impl Kept {
-    pub(super) fn new(rows: Arc<Csr>, operator: Packed) -> Self {
+    pub(super) fn new(rows: Arc<Csr>, operator: Arc<Packed>) -> Self {
         Self { rows, operator }
     }
 
@@ -75,7 +75,7 @@ impl Reuse {
     }
 
     /// `F_p = B_p K_p+ B_p'` of the new rows; must be called only once.
-    pub fn operator(&self, kplus: &GeneralizedInverse, rows: &Csr) -> Result<Packed> {
+    pub fn operator(&self, kplus: &GeneralizedInverse, rows: &Csr) -> Result<Arc<Packed>> {
         match (self, kplus.host()) {
             (Self::All(kept, _), _) => kept
                 .lock()
@@ -83,8 +83,8 @@ impl Reuse {
                 .and_then(|mut kept| kept.take())
                 .map(|kept| kept.operator)
                 .ok_or_else(|| Error::new(Kind::Internal, "a dual operator was asked for twice")),
-            (Self::Some { kept, old }, Some(host)) => extended(&kept.operator, old, host, rows),
-            _ => kplus.inverse_form(rows),
+            (Self::Some { kept, old }, Some(host)) => extended(&kept.operator, old, host, rows).map(Arc::new),
+            _ => kplus.inverse_form(rows).map(Arc::new),
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::certificate::Metric;
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
+use crate::linalg::hash::Shared;
 use crate::model::{Lengths, Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
@@ -43,6 +44,7 @@ impl Prepared {
         self.release();
         let islands = islands(model)?;
         let mut with_rows = reserved(islands.len(), "groups of bodies")?;
+        let mut known = Shared::default();
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
         let mut pilots = vec![None; model.bodies.len()];
         for mut island in islands {
@@ -63,7 +65,7 @@ impl Prepared {
             own.level_gaps(&mut island, &lengths);
             let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix, own.first_tangential());
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
-            with_rows.push((island, Box::new(own), compliance));
+            with_rows.push((Box::new(island), known.share(own.key(), own, DualRows::eq), compliance));
         }
         self.carry(pilots);
         watch.phases.ended(Phase::Rows, begun);
@@ -108,7 +110,7 @@ impl Prepared {
     fn dualize(
         &mut self,
         model: &Model,
-        islands: Vec<(Box<Island>, Box<DualRows>, Vec<f64>)>,
+        islands: Vec<(Box<Island>, Arc<DualRows>, Vec<f64>)>,
         operators: Operators,
         watch: &mut Watch,
     ) -> Result<Duals> {
@@ -137,6 +139,7 @@ impl Prepared {
         let assemble = |p: usize| drafts[island_of[p]].assemble(number_in[p]).map_err(|e| e.body(p));
         watch.every_body(&part, assemble, |p, operator| made[p] = operator)?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
+        let mut known = Shared::default();
         for ((island, rows, compliance), draft) in islands.into_iter().zip(drafts) {
             let columns = draft.columns();
             self.work.columns_computed += columns.computed;
@@ -144,6 +147,7 @@ impl Prepared {
             // Algorithm 3 uses the rigid modes without scaling, as in the paper
             let operators = island.bodies.iter().map(|&p| made[p].take()).collect();
             let dual = draft.finish(operators, compliance, !rows.coupled);
+            let dual = known.share(dual.key(), dual, Dual::same);
             let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
             let of_part = |part: usize| inverse(part).map(|of| (&of.kplus, &of.grounded));
             let whole = Whole::of(model, &island, &of_part)?;
