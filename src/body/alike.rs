@@ -3,13 +3,8 @@
 use crate::body::null_space::NullSpaceInput;
 use crate::body::rigid_modes::Coordinates;
 use crate::body::Body;
-use crate::linalg::hash::{hash, START};
+use crate::linalg::hash::{hash, same_bits, START};
 use crate::linalg::Symmetric;
-
-/// Equal bit by bit, including the sign of zero.
-pub fn same_bits(a: &[f64], b: &[f64]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
-}
 
 pub fn same_pattern(a: &Symmetric, b: &Symmetric) -> bool {
     a.ptr == b.ptr && a.col == b.col

@@ -33,9 +33,7 @@ mod stiffness;
 mod storage;
 mod values;
 
-pub use alike::{
-    input_key, pattern_key, same_bits, same_body, same_matrix, same_pattern, same_vectors, value_key,
-};
+pub use alike::{input_key, pattern_key, same_body, same_matrix, same_pattern, same_vectors, value_key};
 pub use assembled::Assembled;
 pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};

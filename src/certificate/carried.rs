@@ -8,27 +8,16 @@
 //! from the stiffest outward. Where K couples the only unknown of a row to no other, the ground is the other unknown of this row, as
 //! stiff as the stiffest connection of two unknowns. A row within a cluster adds nothing, and D~ = D for all other unknowns.
 
-use std::collections::HashMap;
 use std::rc::Rc;
 
-use crate::body::Stiffness;
-use crate::certificate::grounded::each_entry;
+use crate::certificate::clusters::{Clusters, Metered, CARRIED};
 use crate::constraints::RowSet;
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::{norm_max, NOISE};
 use crate::platform::memory::{filled, zeros};
 
-/// Rows give a carried unknown more than this times its own stiffness: with a smaller ratio kp / k an error of 1e-6 in a
-/// force moves a gap by more than 1e-8 F / kp.
-const CARRIED: f64 = 1e2;
-/// Most unknowns of a cluster: those of a node. Larger clusters, and those that rows hold in part, deform, as rubber on steel
-/// does.
-const CLUSTER: usize = 6;
 const WHAT: &str = "the metric of an island";
-
-/// A body: its first unknown in the island, its K, and the metric of unknowns without stiffness.
-pub type Metered<'a> = (usize, Stiffness<'a>, f64);
 
 /// `D~ / unit` over all unknowns.
 pub struct Metric {
@@ -97,7 +86,7 @@ impl<'a> Search<'a> {
         held[n] = true;
         let mut search = Self { rows, holds, unit, clusters: None, values, stiffness, held };
         if search.is_needed() {
-            search.clusters = Some(Rc::new(Clusters::of(bodies, n + 1)?));
+            search.clusters = Some(Rc::new(Clusters::of(bodies, rows, n + 1)?));
         }
         Ok(search)
     }
@@ -114,14 +103,13 @@ impl<'a> Search<'a> {
 
     /// D^
     pub fn led(mut self) -> Result<Vec<f64>> {
-        self.outward(|search, found, _| {
-            let mut given = zeros(search.values.len(), WHAT)?;
-            search.each_link(&found, |row, yielding, stiffest| {
-                row.iter().for_each(|(j, square, _)| given[*j] += (square / yielding).min(stiffest));
+        self.outward(|search, found, clusters| {
+            let mut given = zeros(found.len(), WHAT)?;
+            search.each_link(&found, clusters, |own, yielding, stiffest| {
+                own.iter().for_each(|(at, square)| given[*at] += (square / yielding).min(stiffest));
             });
-            let led: Vec<usize> = found.into_iter().filter(|j| given[*j] > 0.0).collect();
-            search.hold(&led, &given);
-            Ok(!led.is_empty())
+            let led = (0..found.len()).filter(|&at| given[at] > 0.0).map(|at| found[at]).collect();
+            Ok(search.hold(led, &found, &given))
         })?;
         Ok(self.with_held())
     }
@@ -137,49 +125,79 @@ impl<'a> Search<'a> {
     fn is_needed(&self) -> bool {
         let stiffest = norm_max(&self.stiffness);
         let mut soft = false;
-        self.each_row(|row, _| soft |= row.len() == 1 && CARRIED * self.stiffness[row[0].0] < stiffest);
-        soft || !self.found(|j| j).is_empty()
+        self.each_row(self.every_row(), |row, _| {
+            soft |= row.len() == 1 && CARRIED * self.stiffness[row[0].0] < stiffest;
+        });
+        soft || !self.found(self.every_row(), |j| j).is_empty()
     }
 
-    /// From the stiffest outward: `carry` is given the unknowns that are found and tells whether it has carried some of them.
+    /// From the stiffest outward: `carry` is given the unknowns that are found and not yet held, and returns those that it holds. A row
+    /// is searched again only if one of its unknowns was held: then its other unknowns yield more than this one, if not before.
     fn outward(
         &mut self,
-        mut carry: impl FnMut(&mut Self, Vec<usize>, &Clusters) -> Result<bool>,
+        mut carry: impl FnMut(&mut Self, Vec<usize>, &Clusters) -> Result<Vec<usize>>,
     ) -> Result<()> {
         let Some(clusters) = self.clusters.clone() else { return Ok(()) };
-        while carry(self, self.found(|j| clusters.of[j]), &clusters)? {}
+        let (mut found, mut rows) = (Vec::new(), self.every_row().collect());
+        while !Vec::is_empty(&rows) {
+            found.extend(self.found(rows, |j| clusters.of[j]));
+            found.sort_unstable();
+            found.dedup();
+            rows = clusters.rows_of(&carry(self, found.clone(), &clusters)?);
+            found.retain(|&j| !self.held[j]);
+        }
         Ok(())
     }
 
-    fn hold(&mut self, found: &[usize], given: &[f64]) {
-        found.iter().for_each(|&j| self.stiffness[j] += given[j]);
-        found.iter().for_each(|&j| self.held[j] = true);
+    /// Holds these of the unknowns that are found, to which rows give this.
+    fn hold(&mut self, held: Vec<usize>, found: &[usize], given: &[f64]) -> Vec<usize> {
+        for (&j, given) in found.iter().zip(given).filter(|(j, _)| held.binary_search(j).is_ok()) {
+            self.stiffness[j] += given;
+            self.held[j] = true;
+        }
+        held
     }
 
-    /// Unknown and `b_ij^2 / D~_j` of the entries of every row, and `C_i`, without unit.
-    fn each_row(&self, mut visit: impl FnMut(&[(usize, f64, f64)], f64)) {
+    /// Kind and number of every row.
+    fn every_row(&self) -> impl Iterator<Item = (usize, usize)> + 'a {
+        let sets = self.rows.into_iter().enumerate();
+        sets.flat_map(|(kind, set)| (0..set.len()).map(move |i| (kind, i)))
+    }
+
+    /// Unknown and `b_ij^2 / D~_j` of the entries of every one of these rows, and `C_i`, without unit.
+    fn each_row(
+        &self,
+        rows: impl IntoIterator<Item = (usize, usize)>,
+        mut visit: impl FnMut(&[(usize, f64, f64)], f64),
+    ) {
         let mut row = Vec::new();
-        for (kind, set) in self.rows.into_iter().enumerate() {
-            for i in (0..set.len()).filter(|&i| set.is_finite(i) && (self.holds)(kind, i)) {
-                row.clear();
-                // the rounding of a direction joins nothing
-                let rounding = NOISE * set.largest_entry(i);
-                let entries = set.matrix.row(i).filter(|(_, b)| b.abs() > rounding);
-                row.extend(entries.map(|(j, b)| (j, b * b, b * b / self.stiffness[j])));
-                if let (Some(clusters), [(j, square, _)]) = (&self.clusters, &row[..]) {
-                    if clusters.is_alone(*j) {
-                        row.push((self.stiffness.len(), *square, *square / (clusters.ground / self.unit)));
-                    }
-                }
-                visit(&row, self.unit * set.compliance[i]);
+        for (kind, i) in rows {
+            let set = self.rows[kind];
+            if !set.is_finite(i) || !(self.holds)(kind, i) {
+                continue;
             }
+            row.clear();
+            // the rounding of a direction joins nothing
+            let rounding = NOISE * set.largest_entry(i);
+            let entries = set.matrix.row(i).filter(|(_, b)| b.abs() > rounding);
+            row.extend(entries.map(|(j, b)| (j, b * b, b * b / self.stiffness[j])));
+            if let (Some(clusters), [(j, square, _)]) = (&self.clusters, &row[..]) {
+                if clusters.is_alone(*j) {
+                    row.push((self.stiffness.len(), *square, *square / (clusters.ground / self.unit)));
+                }
+            }
+            visit(&row, self.unit * set.compliance[i]);
         }
     }
 
-    /// Unknowns that yield more than `CARRIED` times as much as another unknown of one of their rows, of another cluster.
-    fn found(&self, cluster: impl Fn(usize) -> usize) -> Vec<usize> {
+    /// Unknowns that yield more than `CARRIED` times as much as another unknown of one of these rows, of another cluster.
+    fn found(
+        &self,
+        rows: impl IntoIterator<Item = (usize, usize)>,
+        cluster: impl Fn(usize) -> usize,
+    ) -> Vec<usize> {
         let mut found = Vec::new();
-        self.each_row(|row, _| {
+        self.each_row(rows, |row, _| {
             // the entry that yields least, and the one that yields least outside its cluster
             let stiffest = |other: Option<usize>| {
                 let among = row.iter().filter(|entry| entry.2 > 0.0 && Some(cluster(entry.0)) != other);
@@ -195,21 +213,24 @@ impl<'a> Search<'a> {
                 }
             }
         });
-        found.sort_unstable();
-        found.dedup();
         found
     }
 
-    /// The entries of these unknowns in every row that joins them to others, `sum_l b_il^2 / D~_l + C_i` over these others, and the
-    /// largest D~_l among them. Clusters are found as a whole: what is not found belongs to others.
-    fn each_link(&self, found: &[usize], mut visit: impl FnMut(&[(usize, f64, f64)], f64, f64)) {
-        let is_found = |entry: &&(usize, f64, f64)| found.binary_search(&entry.0).is_ok();
-        self.each_row(|row, compliance| {
-            let own: Vec<_> = row.iter().filter(is_found).copied().collect();
+    /// Place among these unknowns and `b_ij^2` of their entries in every row that joins them to others, `sum_l b_il^2 / D~_l + C_i` over
+    /// these others, and the largest D~_l among them. Clusters are found as a whole: what is not found belongs to others.
+    fn each_link(
+        &self,
+        found: &[usize],
+        clusters: &Clusters,
+        mut visit: impl FnMut(&[(usize, f64)], f64, f64),
+    ) {
+        let place = |entry: &(usize, f64, f64)| found.binary_search(&entry.0).ok();
+        self.each_row(clusters.rows_of(found), |row, compliance| {
+            let own: Vec<_> = row.iter().filter_map(|entry| Some((place(entry)?, entry.1))).collect();
             if own.is_empty() || own.len() == row.len() {
                 return;
             }
-            let others = || row.iter().filter(|entry| !is_found(entry));
+            let others = || row.iter().filter(|entry| place(entry).is_none());
             let stiffest = others().map(|entry| entry.1 / entry.2).fold(0.0, f64::max);
             visit(&own, others().fold(compliance, |sum, entry| sum + entry.2), stiffest);
         });
@@ -217,88 +238,39 @@ impl<'a> Search<'a> {
 
     /// Gives these unknowns D~: first those that rows hold one by one, then, of groups that rows join, those which have as many rows
     /// as unknowns; not those to which their rows give less than `CARRIED` times their stiffness.
-    fn carry(&mut self, mut found: Vec<usize>, clusters: &Clusters) -> Result<bool> {
+    fn carry(&mut self, mut found: Vec<usize>, clusters: &Clusters) -> Result<Vec<usize>> {
         loop {
-            let (mut given, mut alone) = (zeros(self.values.len(), WHAT)?, zeros(self.values.len(), WHAT)?);
+            let (mut given, mut alone) = (zeros(found.len(), WHAT)?, zeros(found.len(), WHAT)?);
             let mut links = Vec::new();
-            self.each_link(&found, |row, yielding, _| {
-                row.iter().for_each(|(j, square, _)| given[*j] += square / yielding);
-                if let [(j, square, _)] = row {
-                    alone[*j] += square / yielding;
+            self.each_link(&found, clusters, |own, yielding, _| {
+                own.iter().for_each(|(at, square)| given[*at] += square / yielding);
+                if let [(at, square)] = own {
+                    alone[*at] += square / yielding;
                 }
-                let places = row.iter().filter_map(|entry| found.binary_search(&entry.0).ok());
-                links.push(places.collect::<Vec<usize>>());
+                links.push(own.iter().map(|(at, _)| *at).collect::<Vec<usize>>());
             });
-            let holds =
-                |j: usize, given: &[f64]| given[j] > CARRIED * self.stiffness[j] && given[j].is_normal();
-            let mut held: Vec<usize> = found.iter().copied().filter(|j| holds(*j, &alone)).collect();
-            clusters.keep_whole(&mut held);
+            let held_by = |given: &[f64], may_be: &dyn Fn(usize) -> bool| {
+                let enough = |at: usize| given[at] > CARRIED * self.stiffness[found[at]];
+                let held = (0..found.len()).filter(|&at| may_be(at) && enough(at) && given[at].is_normal());
+                let mut held = held.map(|at| found[at]).collect();
+                clusters.keep_whole(&mut held);
+                held
+            };
+            let held: Vec<usize> = held_by(&alone, &|_| true);
             if !held.is_empty() {
-                self.hold(&held, &alone);
-                return Ok(true);
+                return Ok(self.hold(held, &found, &alone));
             }
             // fewer rows than unknowns leave some of their motions to K
             let (group, count) = joined(found.len(), links.iter().map(|places| places.iter().copied()));
             let mut spare = filled(count, 0i64, WHAT)?;
             links.iter().for_each(|places| spare[group[places[0]]] += 1);
             group.iter().for_each(|&group| spare[group] -= 1);
-            let enough = found.iter().zip(&group).filter(|(_, group)| spare[**group] >= 0);
-            let mut held: Vec<usize> = enough.map(|(j, _)| *j).filter(|j| holds(*j, &given)).collect();
-            clusters.keep_whole(&mut held);
+            let held = held_by(&given, &|at| spare[group[at]] >= 0);
             if held.len() == found.len() {
-                self.hold(&held, &given);
-                return Ok(!held.is_empty());
+                return Ok(self.hold(held, &found, &given));
             }
             found = held;
         }
-    }
-}
-
-/// The clusters of all unknowns: those that K couples by more than the springs that hang a pilot on a body.
-struct Clusters {
-    of: Vec<usize>,
-    sizes: Vec<usize>,
-    /// Stiffness of the ground: of the stiffest connection of two unknowns, `max |K_ij|`, not of a penalty; force / length.
-    ground: f64,
-}
-
-impl Clusters {
-    fn of(bodies: &[Metered], n: usize) -> Result<Self> {
-        let (mut pairs, mut hidden, mut ground) = (Vec::new(), Vec::new(), 0.0f64);
-        for (start, k, _) in bodies {
-            let couple = |i: usize, j: usize, v: f64| {
-                ground = if i == j { ground } else { ground.max(v.abs()) };
-                // as far apart as a pilot and the body on which it hangs: |K_ij| < (K_ii K_jj)^1/2 / CARRIED
-                let [part, of] = [i, j].map(|of| CARRIED * v.abs() / k.metric(of, 0.0));
-                if i != j && v != 0.0 && (part * of).is_nan() | (part * of >= 1.0) {
-                    pairs.push([start + i, start + j]);
-                }
-            };
-            if !each_entry(*k, couple) {
-                hidden.extend(*start..start + k.order());
-            }
-        }
-        let (of, count) = joined(n, pairs.into_iter().map(|pair| pair.into_iter()));
-        let mut sizes = filled(count, 0, WHAT)?;
-        of.iter().for_each(|&cluster| sizes[cluster] += 1);
-        // K+ of a body whose entries the host keeps cannot hold further unknowns
-        hidden.into_iter().for_each(|j| sizes[of[j]] += CLUSTER);
-        Ok(Self { of, sizes, ground })
-    }
-
-    /// K couples it to no other unknown. Elastic bodies deform on the ground, also soft ones.
-    fn is_alone(&self, j: usize) -> bool {
-        self.sizes[self.of[j]] == 1
-    }
-
-    /// Keeps the unknowns of small clusters all of which are among these.
-    fn keep_whole(&self, found: &mut Vec<usize>) {
-        let mut counts = HashMap::new();
-        found.iter().for_each(|&j| *counts.entry(self.of[j]).or_insert(0) += 1);
-        found.retain(|&j| {
-            let size = self.sizes[self.of[j]];
-            size <= CLUSTER && counts.get(&self.of[j]) == Some(&size)
-        });
     }
 }
 

@@ -9,6 +9,7 @@
 //! bit in units that differ by powers of two.
 
 mod carried;
+mod clusters;
 mod deformation;
 mod energy;
 mod entry;
@@ -27,8 +28,8 @@ use crate::error::Result;
 use crate::linalg::Matrix;
 
 pub use crate::linalg::vector::NOISE;
-use carried::Metered;
 pub use carried::{led, Metric};
+use clusters::Metered;
 use deformation::Deformation;
 use energy::Energies;
 pub use entry::{Certificate, Entry};

@@ -21,7 +21,7 @@ const REMAINDER: f64 = 1e-4;
 const WHAT: &str = "the decoupling of rows";
 
 /// L, m x m: lower triangular, the diagonal positive and the last entry of every row.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Decoupling {
     /// m
     count: usize,

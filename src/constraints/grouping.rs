@@ -9,7 +9,7 @@ use crate::linalg::Csr;
 const PARALLEL: f64 = 1e-12;
 
 /// The stack of contact rows, equality rows and tangential rows, and which of them are parallel.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Grouping {
     /// First row of every group; the first equality row if the group has one.
     pub leaders: Vec<usize>,

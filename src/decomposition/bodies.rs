@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::body::Body;
+use crate::body::{pattern_key, same_matrix, value_key, Body};
 use crate::error::{Error, Kind, Result};
+use crate::linalg::hash::{hash, Shared};
 use crate::linalg::Symmetric;
 use crate::mesh::{Mesh, Piece};
 use crate::model::{GivenBody, Joint, Model, Part, Parts};
@@ -20,28 +21,46 @@ pub fn parts(
     connected: &Connected,
     held: &dyn Fn(usize) -> bool,
 ) -> Result<(Vec<GivenBody>, Parts)> {
-    let (mut bodies, mut all) = (Vec::new(), Parts::default());
+    let (mut split_bodies, mut all) = (Vec::new(), Parts::default());
     all.offsets.clone_from(&host.offsets);
-    all.starts.push(0);
     for (body, given) in host.bodies.iter().enumerate() {
-        all.first.push(bodies.len());
+        all.first.push(split_bodies.len());
         let assembled = given.body.assembled.as_ref().map(|k| k.measured_without(slight));
         all.assembled.push(assembled.transpose().map_err(|e| e.body(body))?);
         let mut split = Split { given, body, held, first: host.offsets[body], loose: &mut all.loose };
         let pieces = given.mesh.as_deref().and_then(Mesh::pieces).filter(|_| given.body.assembled.is_some());
-        let made = match (pieces, connected.components(body), given.body.stiffness.as_deref()) {
+        split_bodies.extend(match (pieces, connected.components(body), given.body.stiffness.as_deref()) {
             (Some(pieces), ..) => split.pieces(pieces).map_err(|e| e.body(body))?,
             (None, Some(components), Some(k)) => split.components(components, k).map_err(|e| e.body(body))?,
-            _ => vec![(whole(given), Part { body, piece: 0, dofs: None, shares: Vec::new() })],
-        };
-        for (own, part) in made {
-            all.starts.push(all.starts.last().copied().unwrap_or(0) + own.order);
-            all.parts.push(part);
-            bodies.push(GivenBody { body: own, revisions: given.revisions, ..GivenBody::default() });
-        }
+            _ => vec![split.whole()?],
+        });
     }
-    all.first.push(bodies.len());
+    all.first.push(split_bodies.len());
+    let unknowns = split_bodies.iter().map(|made| made.dofs.len()).sum();
+    let mut bodies = reserved(split_bodies.len(), WHAT)?;
+    (all.parts, all.starts) = (reserved(bodies.capacity(), WHAT)?, reserved(bodies.capacity() + 1, WHAT)?);
+    (all.dofs, all.shares) = (reserved(unknowns, WHAT)?, Vec::new());
+    for MadePart { own, part, dofs, shares } in split_bodies {
+        all.starts.push(all.dofs.len());
+        if !shares.is_empty() {
+            all.shares.resize(all.dofs.len(), 1.0);
+            all.shares.extend(shares);
+        }
+        all.dofs.extend_from_slice(&dofs);
+        all.parts.push(part);
+        let revisions = host.bodies[part.body].revisions;
+        bodies.push(GivenBody { body: own, revisions, ..GivenBody::default() });
+    }
+    all.starts.push(all.dofs.len());
     Ok((bodies, all))
+}
+
+/// A part with its unknowns within the body, and its weights there if others have copies.
+struct MadePart {
+    own: Body,
+    part: Part,
+    dofs: Arc<[u32]>,
+    shares: Vec<f64>,
 }
 
 /// The unknowns, among all unknowns of the host, that rows, joints or loads touch.
@@ -58,22 +77,6 @@ pub fn touched(host: &Model, joints: &[Joint]) -> Result<Vec<bool>> {
     Ok(touched)
 }
 
-/// A body that is its only part: its matrix and functions are shared, not copied.
-fn whole(given: &GivenBody) -> Body {
-    let Body { order, stiffness, operator, null_space, coordinates, coordinate_modes, fixing, .. } =
-        &given.body;
-    Body {
-        order: *order,
-        stiffness: stiffness.clone(),
-        operator: operator.clone(),
-        null_space: null_space.clone(),
-        coordinates: coordinates.clone(),
-        coordinate_modes: *coordinate_modes,
-        fixing: fixing.clone(),
-        ..Body::default()
-    }
-}
-
 /// A body of the host that is split into parts.
 struct Split<'a> {
     given: &'a GivenBody,
@@ -87,8 +90,28 @@ struct Split<'a> {
 }
 
 impl Split<'_> {
+    /// A body that is its only part: its matrix and functions are shared, not copied.
+    fn whole(&self) -> Result<MadePart> {
+        let Body { order, stiffness, operator, null_space, coordinates, coordinate_modes, fixing, .. } =
+            &self.given.body;
+        let own = Body {
+            order: *order,
+            stiffness: stiffness.clone(),
+            operator: operator.clone(),
+            null_space: null_space.clone(),
+            coordinates: coordinates.clone(),
+            coordinate_modes: *coordinate_modes,
+            fixing: fixing.clone(),
+            ..Body::default()
+        };
+        let mut dofs = reserved(*order, WHAT)?;
+        dofs.extend(0..*order as u32);
+        let part = Part { body: self.body, piece: 0, whole: true };
+        Ok(MadePart { own, part, dofs: dofs.into(), shares: Vec::new() })
+    }
+
     /// A body of several components. At least one part remains.
-    fn components(&mut self, components: &Components, k: &Symmetric) -> Result<Vec<(Body, Part)>> {
+    fn components(&mut self, components: &Components, k: &Symmetric) -> Result<Vec<MadePart>> {
         let first_loose = self.loose.len();
         let empty = components.empty(k)?.filter(|&i| !(self.held)(self.first + i));
         let mut loose: Vec<usize> = empty.collect();
@@ -97,11 +120,15 @@ impl Split<'_> {
         let left_out = &self.loose[first_loose..];
         let blocks = components.blocks(k, |i| left_out.binary_search(&(self.first + i)).is_ok())?;
         let mut made = reserved(blocks.len(), WHAT)?;
+        let mut known = Shared::default();
         for Component { dofs, stiffness } in blocks {
+            let key = hash(pattern_key(&stiffness), std::iter::once(value_key(&stiffness)));
+            let stiffness = known.share(key, stiffness, same_matrix);
             let null_space = self.given.body.null_space.as_ref();
             let null_space = null_space.map(|given| given.on(&dofs, &stiffness).map(Box::new)).transpose()?;
-            let own = Body { null_space, ..self.part_of(&dofs, Arc::new(stiffness))? };
-            made.push((own, Part { body: self.body, piece: 0, dofs: Some(dofs), shares: Vec::new() }));
+            let own = Body { null_space, ..self.part_of(&dofs, stiffness)? };
+            let part = Part { body: self.body, piece: 0, whole: false };
+            made.push(MadePart { own, part, dofs, shares: Vec::new() });
         }
         Ok(made)
     }
@@ -120,7 +147,7 @@ impl Split<'_> {
         })
     }
 
-    fn pieces(&mut self, pieces: &[Piece]) -> Result<Vec<(Body, Part)>> {
+    fn pieces(&mut self, pieces: &[Piece]) -> Result<Vec<MadePart>> {
         let given = self.given;
         let mut copies = filled(given.body.order, 0u32, WHAT)?;
         pieces.iter().flat_map(|piece| piece.dofs.iter()).for_each(|&dof| copies[dof as usize] += 1);
@@ -141,7 +168,7 @@ impl Split<'_> {
     /// The parts of a piece: their null spaces come from the coordinates of their unknowns, or from their matrices; the
     /// null space of the body is not used. The weight of a copy is its part of the stiffness at the unknown; without
     /// stiffness all copies have equal weights.
-    fn piece(&mut self, number: usize, piece: &Piece, copies: &[u32]) -> Result<Vec<(Body, Part)>> {
+    fn piece(&mut self, number: usize, piece: &Piece, copies: &[u32]) -> Result<Vec<MadePart>> {
         let Piece { dofs, stiffness } = piece;
         let Some(components) = Components::of(stiffness)? else {
             return Ok(vec![self.of_piece(number, Arc::clone(dofs), Arc::clone(stiffness), copies)?]);
@@ -166,7 +193,7 @@ impl Split<'_> {
         dofs: Arc<[u32]>,
         stiffness: Arc<Symmetric>,
         copies: &[u32],
-    ) -> Result<(Body, Part)> {
+    ) -> Result<MadePart> {
         let mut shares = reserved(dofs.len(), WHAT)?;
         let all = |dof: u32| self.given.body.assembled.as_ref().map_or(0.0, |all| all.diagonal(dof as usize));
         let share = |(i, &dof): (usize, &u32)| match (stiffness.diagonal(i), all(dof)) {
@@ -175,7 +202,8 @@ impl Split<'_> {
         };
         shares.extend(dofs.iter().enumerate().map(share));
         let own = Body { fixing: None, ..self.part_of(&dofs, stiffness)? };
-        Ok((own, Part { body: self.body, piece, dofs: Some(dofs), shares }))
+        let part = Part { body: self.body, piece, whole: false };
+        Ok(MadePart { own, part, dofs, shares })
     }
 }
 

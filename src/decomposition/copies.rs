@@ -23,7 +23,7 @@ impl Copies {
         }
         let order = host.bodies[body].body.order;
         let mut ptr = filled(order + 1, 0, WHAT)?;
-        let dofs = |part: usize| parts.parts[part].dofs.iter().flat_map(|dofs| dofs.iter());
+        let dofs = |part: usize| parts.dofs[parts.starts[part]..parts.starts[part + 1]].iter();
         parts.of(body).flat_map(dofs).for_each(|&dof| ptr[dof as usize + 1] += 1);
         (0..order).for_each(|dof| ptr[dof + 1] += ptr[dof]);
         let (mut next, mut copies) = (ptr.clone(), filled(ptr[order], (0, 0), WHAT)?);

@@ -51,7 +51,8 @@ pub fn rows(
 /// The rows with every unknown replaced by `place` of it.
 fn moved(rows: &RowSet, parts: &Parts, place: impl Fn(usize) -> usize) -> Result<RowSet> {
     let mut moved = rows.copied(WHAT)?;
-    let mut matrix = Csr::empty(parts.starts.last().copied().unwrap_or(0));
+    let unknowns = parts.starts.last().copied().unwrap_or(0);
+    let mut matrix = Csr::with_room(unknowns, rows.len(), rows.matrix.val.len());
     for i in 0..rows.len() {
         let mut entries: Vec<(usize, f64)> = rows.matrix.row(i).map(|(j, v)| (place(j), v)).collect();
         entries.sort_unstable_by_key(|entry| entry.0);

@@ -8,6 +8,7 @@
 //! contact rows, then the equality rows, scaled so that `B D^-1 B' + C` has the diagonal 1; forces are in units
 //! of 2^p, the size of the largest diagonal entry of K.
 
+mod alike;
 mod cost;
 mod coupling;
 mod images;
@@ -55,7 +56,7 @@ struct Subdomain {
     /// `B_p = T B`
     multiples: Multiples,
     /// `B K_p+ B'`, the part of F_p between T and T'; none: F_p is applied through K_p+.
-    operator: Option<Packed>,
+    operator: Option<Arc<Packed>>,
     /// Power of two by which `K_p+` and its products are multiplied, so that forces of all bodies have one unit.
     by: f64,
     /// Multiplications of a product with F_p, and of a factorisation of K_p.
@@ -130,7 +131,7 @@ impl Draft {
     }
 
     /// `B K_p+ B'` of body p, none if it is matrix-free; must be called only once per body.
-    pub fn assemble(&self, p: usize) -> Result<Option<Packed>> {
+    pub fn assemble(&self, p: usize) -> Result<Option<Arc<Packed>>> {
         let (rows, reuse) = &self.distinct[p];
         reuse.as_ref().map(|reuse| reuse.operator(&self.subdomains[p].kplus, rows)).transpose()
     }
@@ -142,7 +143,12 @@ impl Draft {
 
     /// The dual problem with the assembled operators; `compliance`: the diagonal of C, m entries. `balanced`: scales R_p
     /// so that `|G_p|` is in [1, 2) for every body that rows touch; otherwise R_p is not scaled.
-    pub fn finish(self, operators: Vec<Option<Packed>>, mut compliance: Vec<f64>, balanced: bool) -> Dual {
+    pub fn finish(
+        self,
+        operators: Vec<Option<Arc<Packed>>>,
+        mut compliance: Vec<f64>,
+        balanced: bool,
+    ) -> Dual {
         let mut subdomains = self.subdomains;
         subdomains.iter_mut().zip(operators).for_each(|(s, operator)| s.operator = operator);
         let modes = subdomains.last().map_or(0, |s| s.modes.end);
@@ -160,9 +166,11 @@ impl Draft {
 
 impl Dual {
     /// The assembled operators of the bodies with their rows, for a dual problem with other rows.
-    pub fn into_operators(self) -> Vec<Option<Box<Kept>>> {
-        let kept = |s: Subdomain| Some(Box::new(Kept::new(Multiples::of(&s.matrix).1, s.operator?)));
-        self.subdomains.into_iter().map(kept).collect()
+    pub fn operators(&self) -> Vec<Option<Box<Kept>>> {
+        let kept = |s: &Subdomain| {
+            Some(Box::new(Kept::new(Multiples::of(&s.matrix).1, Arc::clone(s.operator.as_ref()?))))
+        };
+        self.subdomains.iter().map(kept).collect()
     }
 
     /// Numbers of distinct rows of B over each of these ranges of all unknowns, ascending; rows that are multiples of each other

@@ -9,7 +9,7 @@ use crate::linalg::Csr;
 pub struct Multiples {
     /// Rows of B.
     pub count: usize,
-    /// T by rows: row i of B_p is `factor` times row `of` of B.
+    /// T by rows: row i of B_p is `factor` times row `of` of B. Empty if T = I.
     multiples: Vec<RowMultiple>,
 }
 
@@ -45,30 +45,40 @@ impl Multiples {
             }
         }
         let count = distinct.rows();
-        let distinct = if count == matrix.rows() { Arc::clone(matrix) } else { Arc::new(distinct) };
-        (Self { count, multiples }, distinct)
+        if count == matrix.rows() {
+            return (Self { count, multiples: Vec::new() }, Arc::clone(matrix));
+        }
+        (Self { count, multiples }, Arc::new(distinct))
+    }
+
+    fn row(&self, i: usize) -> RowMultiple {
+        self.multiples.get(i).copied().unwrap_or(RowMultiple { of: i, factor: 1.0 })
     }
 
     /// Rows of B that the first rows of B_p, so many, are multiples of.
     pub fn count_of_first(&self, rows: usize) -> usize {
-        self.multiples[..rows].iter().map(|m| m.of + 1).max().unwrap_or(0)
+        (0..rows).map(|i| self.row(i).of + 1).max().unwrap_or(0)
     }
 
     /// `T' x_p` of the entries `rows` of x.
     pub fn gather(&self, rows: &[usize], x: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.count];
-        rows.iter().zip(&self.multiples).for_each(|(&i, m)| sums[m.of] += m.factor * x[i]);
+        for (at, &i) in rows.iter().enumerate() {
+            let RowMultiple { of, factor } = self.row(at);
+            sums[of] += factor * x[i];
+        }
         sums
     }
 
     /// `T v`
     pub fn spread<'a>(&'a self, v: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        self.multiples.iter().map(|m| m.factor * v[m.of])
+        let rows = self.multiples.len().max(self.count);
+        (0..rows).map(|i| self.row(i)).map(|m| m.factor * v[m.of])
     }
 
     /// Entry (i, j) of `T A T'` from the entries of A.
     pub fn entry(&self, i: usize, j: usize, of: impl Fn(usize, usize) -> f64) -> f64 {
-        let (i, j) = (self.multiples[i], self.multiples[j]);
+        let (i, j) = (self.row(i), self.row(j));
         i.factor * j.factor * of(i.of, j.of)
     }
 }

@@ -123,7 +123,7 @@ impl Operator for Dual {
     }
 
     fn bytes_kept(&self) -> usize {
-        self.subdomains.iter().filter_map(|s| s.operator.as_ref()).map(Operator::bytes_kept).sum()
+        self.subdomains.iter().filter_map(|s| s.operator.as_ref()).map(|of| of.bytes_kept()).sum()
     }
 }
 

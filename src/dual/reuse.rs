@@ -12,7 +12,7 @@ use crate::linalg::{Csr, Operator, Packed};
 /// `F_p` and the rows of B over body p for which it was made.
 pub struct Kept {
     rows: Arc<Csr>,
-    operator: Packed,
+    operator: Arc<Packed>,
 }
 
 /// Counts of the columns of dual operators, one for each row and body that it touches.
@@ -25,16 +25,16 @@ pub struct ColumnCounts {
 /// What the new rows of a body have in common with the previous ones.
 pub(super) enum Reuse {
     /// All rows, in the same order.
-    All(Mutex<Option<Packed>>, usize),
+    All(Mutex<Option<Box<Kept>>>, usize),
     /// Some rows, and every column costs the host a solution: for every new row its number among the previous ones.
-    Some { operator: Packed, old: Vec<Option<usize>> },
+    Some { kept: Box<Kept>, old: Vec<Option<usize>> },
     /// The whole operator, with this number of rows, is assembled: a column computed alone or beside other rows differs
     /// by rounding.
     Nothing(usize),
 }
 
 impl Kept {
-    pub(super) fn new(rows: Arc<Csr>, operator: Packed) -> Self {
+    pub(super) fn new(rows: Arc<Csr>, operator: Arc<Packed>) -> Self {
         Self { rows, operator }
     }
 
@@ -52,13 +52,13 @@ impl Sum for ColumnCounts {
 impl Reuse {
     pub fn of(kept: Option<Box<Kept>>, kplus: &GeneralizedInverse, rows: &Csr) -> Self {
         let m = rows.rows();
-        let Some(kept) = kept.map(|kept| *kept) else { return Self::Nothing(m) };
+        let Some(kept) = kept else { return Self::Nothing(m) };
         let old = matched(&kept.rows, rows);
         if m == kept.rows.rows() && old.iter().enumerate().all(|(i, old)| *old == Some(i)) {
-            return Self::All(Mutex::new(Some(kept.operator)), m);
+            return Self::All(Mutex::new(Some(kept)), m);
         }
         if kplus.host().is_some() && old.iter().any(Option::is_some) {
-            return Self::Some { operator: kept.operator, old };
+            return Self::Some { kept, old };
         }
         Self::Nothing(m)
     }
@@ -75,15 +75,16 @@ impl Reuse {
     }
 
     /// `F_p = B_p K_p+ B_p'` of the new rows; must be called only once.
-    pub fn operator(&self, kplus: &GeneralizedInverse, rows: &Csr) -> Result<Packed> {
+    pub fn operator(&self, kplus: &GeneralizedInverse, rows: &Csr) -> Result<Arc<Packed>> {
         match (self, kplus.host()) {
-            (Self::All(operator, _), _) => operator
+            (Self::All(kept, _), _) => kept
                 .lock()
                 .ok()
-                .and_then(|mut operator| operator.take())
+                .and_then(|mut kept| kept.take())
+                .map(|kept| kept.operator)
                 .ok_or_else(|| Error::new(Kind::Internal, "a dual operator was asked for twice")),
-            (Self::Some { operator, old }, Some(host)) => extended(operator, old, host, rows),
-            _ => kplus.inverse_form(rows),
+            (Self::Some { kept, old }, Some(host)) => extended(&kept.operator, old, host, rows).map(Arc::new),
+            _ => kplus.inverse_form(rows).map(Arc::new),
         }
     }
 }

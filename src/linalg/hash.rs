@@ -1,8 +1,36 @@
-//! Hash keys of lists of numbers: equal for equal lists, rarely equal for different lists.
+//! Hash keys of lists of numbers: equal for equal lists, rarely equal for different lists; and values kept once by their keys.
+
+use std::collections::hash_map::{Entry, HashMap};
+use std::sync::Arc;
 
 pub const START: u64 = 0xcbf2_9ce4_8422_2325;
 
 /// FNV-1a, word by word, continuing from the key `before`; the shift moves the high bits of numbers with few digits down.
 pub fn hash(before: u64, words: impl Iterator<Item = u64>) -> u64 {
     words.fold(before, |key, word| (key ^ word ^ (word >> 32)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// Values of many small parts, most of them equal: each is kept once.
+pub struct Shared<T>(HashMap<u64, Arc<T>>);
+
+impl<T> Default for Shared<T> {
+    fn default() -> Self {
+        Self(HashMap::new())
+    }
+}
+
+impl<T> Shared<T> {
+    /// The value kept by this key if it is the `same`, otherwise this one.
+    pub fn share(&mut self, key: u64, value: T, same: impl Fn(&T, &T) -> bool) -> Arc<T> {
+        match self.0.entry(key) {
+            Entry::Occupied(known) if same(known.get(), &value) => Arc::clone(known.get()),
+            Entry::Occupied(_) => Arc::new(value),
+            Entry::Vacant(free) => Arc::clone(free.insert(Arc::new(value))),
+        }
+    }
+}
+
+/// Equal bit by bit, including the sign of zero.
+pub fn same_bits(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }

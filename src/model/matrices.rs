@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use crate::body::{
-    check_finite, from_borrowed, from_dense, from_sparse, from_split, same_bits, same_matrix, same_pattern,
-    Columns, Form, Places, SparseInput, Storage,
+    check_finite, from_borrowed, from_dense, from_sparse, from_split, same_matrix, same_pattern, Columns,
+    Form, Places, SparseInput, Storage,
 };
 use crate::error::{Error, Kind, Result};
+use crate::linalg::hash::same_bits;
 use crate::linalg::{Borrowed, Symmetric};
 use crate::model::bodies::check_ld;
 use crate::model::contents::{Change, Model};

@@ -20,6 +20,10 @@ pub struct Parts {
     /// First unknown of every part, and their end.
     pub starts: Vec<usize>,
     pub parts: Vec<Part>,
+    /// Number of every unknown of the parts within its body; within a part they ascend.
+    pub dofs: Vec<u32>,
+    /// Weight of the parts at their unknowns (the weights of all copies sum to 1); beyond its end they have the only copies.
+    pub shares: Vec<f64>,
     /// K of the bodies that are cut.
     pub assembled: Vec<Option<Arc<Assembled>>>,
     /// Unknowns without stiffness, row and load, in no part, among all unknowns of the host: their displacement is 0.
@@ -31,16 +35,14 @@ pub struct Parts {
 }
 
 /// One part.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Part {
     /// Body of the host.
     pub body: usize,
     /// Number of the piece of the body that it belongs to, if the body is cut.
     pub piece: usize,
-    /// Its unknowns within the body, ascending; none: all unknowns.
-    pub dofs: Option<Arc<[u32]>>,
-    /// Its weight at each unknown (the weights of all copies sum to 1); empty: it has the only copies.
-    pub shares: Vec<f64>,
+    /// It is the body.
+    pub whole: bool,
 }
 
 impl Parts {
@@ -61,20 +63,21 @@ impl Parts {
 
     /// Number of unknown i of a part within its body, and the weight of the part there.
     pub fn place(&self, part: usize, i: usize) -> (usize, f64) {
-        let Part { dofs, shares, .. } = &self.parts[part];
-        (dofs.as_ref().map_or(i, |dofs| dofs[i] as usize), shares.get(i).copied().unwrap_or(1.0))
+        let at = self.starts[part] + i;
+        (self.dofs[at] as usize, self.shares.get(at).copied().unwrap_or(1.0))
     }
 
     /// The only part of a body, if it has all unknowns of the body.
     pub fn only(&self, body: usize) -> Option<usize> {
         let first = self.first[body];
-        self.parts[first].dofs.is_none().then_some(first)
+        self.parts[first].whole.then_some(first)
     }
 
     /// Whether the parts of both models are the same unknowns.
     pub fn same(&self, other: &Self) -> bool {
-        let dofs = |parts: &Self| parts.parts.iter().map(|part| part.dofs.clone()).collect::<Vec<_>>();
-        self.first == other.first && dofs(self) == dofs(other)
+        let same = |parts: &Self| parts.parts.iter().map(|part| part.whole).collect::<Vec<_>>();
+        let of = |parts: &Self| (same(parts), [&parts.first, &parts.starts].map(Clone::clone));
+        of(self) == of(other) && self.dofs == other.dofs
     }
 
     /// The values of a part from values over the unknowns of its body.

@@ -9,6 +9,7 @@ use crate::certificate::Metric;
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
+use crate::linalg::hash::Shared;
 use crate::model::{Lengths, Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
@@ -41,37 +42,37 @@ impl Prepared {
             return Ok(());
         }
         self.release();
-        let mut islands = islands(model)?;
-        islands.iter_mut().for_each(|island| island.refresh(&lengths));
-        let mut rows = reserved(islands.len(), "groups of bodies")?;
+        let islands = islands(model)?;
+        let mut with_rows = reserved(islands.len(), "groups of bodies")?;
+        let mut known = Shared::default();
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
         let mut pilots = vec![None; model.bodies.len()];
-        for island in &mut islands {
-            check_compliance(island)?;
-            let Metric { values, carried } = metric(model, island)?;
+        for mut island in islands {
+            island.refresh(&lengths);
+            check_compliance(&island)?;
+            let Metric { values, carried } = metric(model, &island)?;
             for (&p, range) in island.bodies.iter().zip(&island.ranges) {
                 let [first, end] = [range.start, range.end].map(|end| carried.partition_point(|j| *j < end));
                 if first < end {
-                    let by = ratio_of_units(model, island, p);
+                    let by = ratio_of_units(model, &island, p);
                     let metric = values[range.clone()].iter().map(|d| (d * by).min(f64::MAX)).collect();
                     let carried = carried[first..end].iter().map(|j| j - range.start).collect();
                     pilots[p] = Some(Box::new(Pilots { metric, carried }));
                 }
             }
-            let (mut own, compliance) = DualRows::of(island, values, coupled(&model.settings))?;
+            let (mut own, compliance) = DualRows::of(&island, values, coupled(&model.settings))?;
             own.uneven |= !carried.is_empty();
-            own.level_gaps(island, &lengths);
+            own.level_gaps(&mut island, &lengths);
             let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix, own.first_tangential());
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
-            rows.push((Box::new(own), compliance));
+            with_rows.push((Box::new(island), known.share(own.key(), own, DualRows::eq), compliance));
         }
         self.carry(pilots);
         watch.phases.ended(Phase::Rows, begun);
         let operators = self.factorize(model, &distinct, watch)?;
         self.tell_pilots(model, &watch.log)?;
         let begun = Instant::now();
-        let islands = islands.into_iter().map(Box::new).zip(rows).collect();
-        self.duals = Some(self.dualize(model, islands, operators, watch)?);
+        self.duals = Some(self.dualize(model, with_rows, operators, watch)?);
         self.made += 1;
         watch.phases.ended(Phase::DualOperators, begun);
         Ok(())
@@ -109,13 +110,13 @@ impl Prepared {
     fn dualize(
         &mut self,
         model: &Model,
-        islands: Vec<(Box<Island>, (Box<DualRows>, Vec<f64>))>,
+        islands: Vec<(Box<Island>, Arc<DualRows>, Vec<f64>)>,
         operators: Operators,
         watch: &mut Watch,
     ) -> Result<Duals> {
         let mut drafts = reserved(islands.len(), "groups of bodies")?;
         let (mut island_of, mut number_in) = (vec![0; model.bodies.len()], vec![0; model.bodies.len()]);
-        for (k, (island, (rows, _))) in islands.iter().enumerate() {
+        for (k, (island, rows, _)) in islands.iter().enumerate() {
             let mut parts = reserved(island.bodies.len(), "groups of bodies")?;
             for (number, (&p, range)) in island.bodies.iter().zip(&island.ranges).enumerate() {
                 (island_of[p], number_in[p]) = (k, number);
@@ -134,17 +135,19 @@ impl Prepared {
             until: assembled(&model.settings),
             on_caller: model.on_caller(&all),
         };
-        let mut made: Vec<Vec<_>> =
-            islands.iter().map(|(island, _)| island.bodies.iter().map(|_| None).collect()).collect();
+        let mut made: Vec<_> = all.iter().map(|_| None).collect();
         let assemble = |p: usize| drafts[island_of[p]].assemble(number_in[p]).map_err(|e| e.body(p));
-        watch.every_body(&part, assemble, |p, operator| made[island_of[p]][number_in[p]] = operator)?;
+        watch.every_body(&part, assemble, |p, operator| made[p] = operator)?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
-        for (((island, (rows, compliance)), draft), made) in islands.into_iter().zip(drafts).zip(made) {
+        let mut known = Shared::default();
+        for ((island, rows, compliance), draft) in islands.into_iter().zip(drafts) {
             let columns = draft.columns();
             self.work.columns_computed += columns.computed;
             self.work.columns_kept += columns.kept;
             // Algorithm 3 uses the rigid modes without scaling, as in the paper
-            let dual = draft.finish(made, compliance, !rows.coupled);
+            let operators = island.bodies.iter().map(|&p| made[p].take()).collect();
+            let dual = draft.finish(operators, compliance, !rows.coupled);
+            let dual = known.share(dual.key(), dual, Dual::same);
             let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
             let of_part = |part: usize| inverse(part).map(|of| (&of.kplus, &of.grounded));
             let whole = Whole::of(model, &island, &of_part)?;

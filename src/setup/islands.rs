@@ -8,6 +8,7 @@ use crate::certificate::{Certificate, Entry};
 use crate::constraints::{Friction, FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::graph::joined;
+use crate::linalg::hash::Shared;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
 use crate::model::{Lengths, Model};
@@ -234,13 +235,14 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         island.bodies = bodies;
     }
     let place = |j: usize| start[body_of(j)] + j - offsets[body_of(j)];
+    let mut known = Shared::default();
     for kind in [RowKind::Inequality, RowKind::Equality] {
         let rows = model.rows(kind);
         let finite = (0..rows.len()).filter(|&i| rows.is_finite(i));
         let island_of = |i: usize| rows.matrix.row(i).next().map(|(j, _)| (of_body[body_of(j)], i));
         let numbers = members(count, finite.filter_map(island_of));
         for (island, numbers) in islands.iter_mut().zip(numbers).filter(|(_, own)| !own.is_empty()) {
-            let rows = restricted(rows, &numbers, island.unknowns(), place)?;
+            let rows = restricted(rows, &numbers, island.unknowns(), place, &mut known)?;
             let own = Members { numbers, rows };
             if kind == RowKind::Inequality {
                 island.contact = own;
@@ -306,17 +308,19 @@ fn nodes(
     for island in islands.iter_mut().filter(|island| !island.friction.numbers.is_empty()) {
         let unknowns = island.unknowns();
         let Members { numbers, rows } = &mut Arc::make_mut(&mut island.friction).tangential;
-        *rows = restricted(&all.rows, numbers, unknowns, place)?;
+        *rows = restricted(&all.rows, numbers, unknowns, place, &mut Shared::default())?;
     }
     Ok(())
 }
 
-/// These rows over the unknowns of an island; if the island has all rows, the entries are shared with the host's rows.
+/// These rows over the unknowns of an island, which shares their entries with the host's rows if it has all of them, otherwise with
+/// other islands that have equal ones.
 fn restricted(
     rows: &RowSet,
     numbers: &[usize],
     unknowns: usize,
     place: impl Fn(usize) -> usize,
+    known: &mut Shared<Csr>,
 ) -> Result<RowSet> {
     let pick = |values: &[f64]| -> Vec<f64> { numbers.iter().map(|&i| values[i]).collect() };
     let matrix = if numbers.len() == rows.len() && rows.matrix.cols == unknowns {
@@ -325,7 +329,7 @@ fn restricted(
         let entries = numbers.iter().map(|&i| rows.matrix.row(i).count()).sum();
         let mut own = Csr::with_room(unknowns, numbers.len(), entries);
         numbers.iter().for_each(|&i| own.push_row(rows.matrix.row(i).map(|(j, v)| (place(j), v))));
-        Arc::new(own)
+        known.share(own.key(), own, Csr::eq)
     };
     let (rhs, compliance) = (copied(&pick(&rows.rhs), WHAT)?, pick(&rows.compliance));
     Ok(RowSet { matrix, rhs, compliance, ..RowSet::default() })

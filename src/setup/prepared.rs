@@ -128,7 +128,7 @@ impl Prepared {
     /// Drops the dual problems; their operators are kept for later rows.
     pub(super) fn release(&mut self) {
         for ready in self.duals.take().into_iter().flat_map(|duals| duals.islands) {
-            for (p, operator) in ready.island.bodies.into_iter().zip(ready.dual.into_operators()) {
+            for (p, operator) in ready.island.bodies.into_iter().zip(ready.dual.operators()) {
                 if let Some(inverse) = &mut self.bodies[p].inverse {
                     inverse.operator = operator;
                 }

@@ -1,5 +1,7 @@
 //! The dual problem of an island, ready for any load and gap.
 
+use std::sync::Arc;
+
 use crate::dual::{Dual, Preconditioner};
 use crate::error::Result;
 use crate::model::Preconditioning;
@@ -14,11 +16,12 @@ use crate::setup::whole::Whole;
 /// Multiplications of a product with F, a tenth of a millisecond, above which several threads save time.
 const PARALLEL_PAYS: usize = 1 << 18;
 
-/// The dual problem of an island. There may be very many, of one small body each: what few of them have is apart.
+/// The dual problem of an island. There may be very many, of one small body each: what few of them have is apart, and equal ones share
+/// what does not depend on loads and gaps.
 pub struct Ready {
     pub island: Box<Island>,
-    pub dual: Dual,
-    pub rows: Box<DualRows>,
+    pub dual: Arc<Dual>,
+    pub rows: Arc<DualRows>,
     /// The island in terms of the host's bodies, if its own bodies are pieces of them.
     pub whole: Option<Box<Whole>>,
     /// The preconditioner and its option.

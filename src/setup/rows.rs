@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
 use crate::error::Result;
+use crate::linalg::hash::hash;
 use crate::linalg::vector::NOISE;
 use crate::linalg::Csr;
 use crate::model::Lengths;
@@ -11,6 +12,7 @@ use crate::setup::islands::{Island, Members};
 use crate::setup::scaling::Scaling;
 
 /// Rows of the dual, and their relation to the host's rows.
+#[derive(PartialEq)]
 pub struct DualRows {
     /// One row per group of parallel rows of `S [B; H]`.
     pub scaled: Arc<Csr>,
@@ -105,6 +107,11 @@ impl DualRows {
         let scaling = Scaling { unit: island.unit, scale, grouping, decoupling };
         let rows = Self { scaled, matrix, metric, scaling, coupled, contact, tangential, uneven };
         Ok((rows, compliance))
+    }
+
+    /// Hash key of the rows.
+    pub fn key(&self) -> u64 {
+        hash(self.scaled.key(), self.metric.iter().map(|d| d.to_bits()))
     }
 
     /// Parallel contact rows whose gaps agree to the accuracy of the data have the tightest of these gaps: what is taken from the

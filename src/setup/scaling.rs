@@ -11,6 +11,7 @@ use crate::platform::memory::zeros;
 /// ```
 ///
 /// where the rows of a group, multiples of each other, have one x and one c'. Rows of a group carry shares of the force.
+#[derive(PartialEq)]
 pub struct Scaling {
     /// 2^p, force / length.
     pub unit: f64,

@@ -231,7 +231,7 @@ pub(super) mod tests {
         let ready = &prepared.done(model).unwrap().islands[0];
         let case = Case { model, prepared: &prepared, ready };
         let dual = scaled(case).unwrap();
-        let (qp, direct) = (dual.qp(ready, &ready.dual), direct(case).unwrap());
+        let (qp, direct) = (dual.qp(ready, &*ready.dual), direct(case).unwrap());
         let recovery = Recovery::new(case, &dual, Faces::new(qp, direct)).unwrap();
         work(&mut Certifier::new(recovery));
     }

@@ -239,7 +239,7 @@ pub fn direct(case: Case<'_>) -> Result<Direct<'_>> {
     let asked = usize::try_from(settings.direct_limit).unwrap_or(usize::MAX);
     let most = asked.min(ready.dual.order() + ready.dual.modes());
     let fits = prepared.done(case.model)?.operators.check_more(settings, Direct::bytes(most)).is_ok();
-    Ok(Direct { entries: &ready.dual, limit: if fits { most } else { 0 } })
+    Ok(Direct { entries: &*ready.dual, limit: if fits { most } else { 0 } })
 }
 
 /// The outcome of the solution, or the error that names why there is no answer.

@@ -13,7 +13,7 @@ pub fn same_bodies(a: &Option<Decomposition>, b: &Option<Decomposition>) -> bool
     let parts = |of: &Option<Decomposition>| of.as_ref().and_then(|of| of.model.parts.clone());
     match (parts(a), parts(b)) {
         (Some(a), Some(b)) => a.same(&b),
-        (Some(parts), None) | (None, Some(parts)) => parts.parts.iter().all(|part| part.dofs.is_none()),
+        (Some(parts), None) | (None, Some(parts)) => parts.parts.iter().all(|part| part.whole),
         (None, None) => true,
     }
 }

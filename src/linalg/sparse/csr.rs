@@ -1,15 +1,24 @@
 //! Sparse matrices by rows: constraint rows B, H and the coarse matrix G'.
 
 use crate::error::Result;
+use crate::linalg::hash::{hash, same_bits, START};
 use crate::platform::memory::{filled, zeros};
 
 /// `rows x cols`; row i holds entries `ptr[i]..ptr[i+1]`, columns ascending.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct Csr {
     pub cols: usize,
     pub ptr: Vec<usize>,
     pub col: Vec<usize>,
     pub val: Vec<f64>,
+}
+
+/// Equal bit by bit.
+impl PartialEq for Csr {
+    fn eq(&self, other: &Self) -> bool {
+        let places = self.cols == other.cols && self.ptr == other.ptr && self.col == other.col;
+        places && same_bits(&self.val, &other.val)
+    }
 }
 
 impl Csr {
@@ -27,6 +36,12 @@ impl Csr {
 
     pub fn rows(&self) -> usize {
         self.ptr.len() - 1
+    }
+
+    /// Hash key of the entries.
+    pub fn key(&self) -> u64 {
+        let places = self.ptr.iter().chain(&self.col).map(|&at| at as u64);
+        hash(START, places.chain(self.val.iter().map(|v| v.to_bits())))
     }
 
     /// Appends one row; `entries` with ascending columns.

@@ -70,7 +70,7 @@ impl Unheld {
     /// For the forces that leave the least of the resultants, each multiplied by its weight.
     fn nearest(case: Case, scaled: &Scaled, far: &[bool], weights: &[f64]) -> Result<Self> {
         let ready = case.ready;
-        let qp = scaled.qp(ready, &ready.dual);
+        let qp = scaled.qp(ready, &*ready.dual);
         let is_far = |i: &usize| far.get(*i).copied().unwrap_or(false);
         let rows: Vec<usize> = (0..qp.b.len()).filter(|i| !is_far(i)).collect();
         let near = Restricted::new(qp, &rows);
