@@ -6,7 +6,7 @@ use std::sync::Arc;
 use decks::{Body, Deck};
 use feti_contact::body::{from_sparse, GeneralizedInverse, Modes, NullSpaceInput, SparseInput, Storage};
 use feti_contact::error::{Error, Kind, Result};
-use feti_contact::linalg::cholesky::{inverse_form, nested_dissection};
+use feti_contact::linalg::cholesky::{inverse_form, order_of_elimination};
 use feti_contact::linalg::graph::Graph;
 use feti_contact::linalg::{Analysis, Csr, Matrix, Multiple, Operator, Packed, Symmetric};
 
@@ -53,7 +53,7 @@ fn measure(body: &Body, rows: &Csr) -> Result<([f64; NAMES.len()], usize)> {
     let mut held = vec![false; body.dofs()];
     let inverse = timed(&mut seconds[1], || plan.execute())?.inverse;
     inverse.fixing.iter().for_each(|&dof| held[dof] = true);
-    timed(&mut seconds[2], || nested_dissection(&Graph::of(&k.matrix)?, &held))?;
+    timed(&mut seconds[2], || order_of_elimination(&Graph::of(&k.matrix)?, &held))?;
     let analysis = Arc::new(timed(&mut seconds[3], || Analysis::new(&k.matrix, &held))?);
     let factor = timed(&mut seconds[4], || analysis.factorize(&k.matrix, k.by))?;
     let factor = factor.map_err(|at| Error::new(Kind::Indefinite, "no factor").dof(at.dof))?;

@@ -39,7 +39,7 @@ pub fn solve_dual(
     let mut solution = minimise(qp, start, limits, judge, steps)?;
     if solution.counts.direct > 0 {
         let after = solution.counts.steps();
-        steps.line(format!("after {after} steps a direct solution on active sets cost no more than they: it is correct to rounding"))?;
+        steps.line(format!("after {after} steps a direct solution on active sets cost no more than they"))?;
     }
     let inside = on_faces(&mut solution, means.direct, judge, steps, Effort::All)?;
     if let Some(x) = inside.filter(|_| Rung::Again.is_tried()) {

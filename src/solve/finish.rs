@@ -143,8 +143,8 @@ impl<'a, 'b> Finish<'a, 'b> {
         recovery.sparse_faces()
     }
 
-    /// Up to `most` active sets one after the other, on up to `dense` rows and modes by dense factors, until one confirms itself. If its answer does not pass, sparse factors take the place of dense
-    /// ones from the beginning on, since the point may have lost its digits.
+    /// Up to `most` active sets one after the other, on up to `dense` rows and modes by dense factors, until one confirms itself. If its
+    /// answer does not pass, sparse factors take the place of dense ones from the beginning on, since the point may have lost its digits.
     fn follow(
         &mut self,
         mut active: Vec<bool>,

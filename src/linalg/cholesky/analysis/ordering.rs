@@ -175,6 +175,30 @@ mod tests {
         order_of_elimination(graph, &vec![false; graph.order()]).unwrap()
     }
 
+    /// By hand: an entry per node and one per edge, whatever the numbers of the nodes.
+    #[test]
+    fn a_chain_is_ordered_without_fill() {
+        let n = 1000;
+        let place = |k: usize| (k * 381) % n;
+        let mut rows = vec![Vec::new(); n];
+        (1..n).map(|k| (place(k), place(k - 1))).for_each(|(a, b)| rows[a.max(b)].push(a.min(b) as u32));
+        let (mut ptr, mut col) = (vec![0], Vec::new());
+        for (i, mut row) in rows.into_iter().enumerate() {
+            row.push(i as u32);
+            row.sort_unstable();
+            col.extend(row);
+            ptr.push(col.len());
+        }
+        let val = vec![1.0; col.len()];
+        let graph = Graph::of(&Symmetric::new(ptr, col, val)).unwrap();
+        let order = order_of(&graph);
+        let mut rank = vec![0; n];
+        order.iter().enumerate().for_each(|(at, &i)| rank[i] = at);
+        // eliminated with two neighbours left, a node would join them
+        let later = |i: usize| graph.neighbours(i).iter().filter(|&&j| rank[j as usize] > rank[i]).count();
+        assert!((0..n).all(|i| later(i) <= 1));
+    }
+
     /// Ratios of times, each the least of three, measured alternately: other load of the machine affects both.
     #[test]
     fn lone_unknowns_cost_the_order_little_more_than_their_share() {
