@@ -22,6 +22,8 @@ const RATE: f64 = 5.0;
 /// again.
 const CACHE: f64 = 8e6;
 const AGAIN: f64 = 0.25;
+/// Columns of a factor with fewer entries take as long: their order has to be found, too.
+const THIN: f64 = 10.0;
 
 /// Numbers of distinct rows of a body: all, and those that are not tangential.
 #[derive(Debug, Clone, Copy, Default)]
@@ -63,7 +65,7 @@ impl Size {
         if self.entries == 0 {
             f64::INFINITY
         } else {
-            l * l / n
+            (l / n).max(THIN).powi(2) * n
         }
     }
 

@@ -14,7 +14,7 @@ mod iterate;
 mod steps;
 mod stop;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::linalg::vector::{dot, norm, norm_max, ratio, NOISE};
 use crate::platform::interrupt;
 use crate::qp::between_solves::BetweenSolves;
@@ -112,30 +112,15 @@ fn proportioning(
     // S7
     let scale = judge.scale(&it.x, &it.alpha)?;
     let stop = Stop::new(limits.tolerance * scale);
-    let ended = run(&mut it, stop, limits, judge, observer)
-        .or_else(|error| Ok::<_, Error>(Ended::Here(Verdict::of_refusal(error)?)))?;
+    let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
     it.counts.coarse_solves = it.coarse.solves;
     it.counts.coarse_factorisations = it.coarse.factorisations;
-    it.qp.kept.iter().for_each(|kept| kept.keep_directions(std::mem::take(&mut it.kept)));
-    let verdict = match ended {
-        Ended::Here(verdict) => verdict,
-        Ended::Mended(solution) => {
-            let counts = Counts { direct: solution.counts.direct, ..it.counts };
-            return Ok(Solution { scale, counts, ..solution });
-        }
-    };
     let none = NO_FORCE * norm_max(&it.x);
     let held: Vec<bool> = it.x.iter().zip(it.qp.bounded).map(|(x, bounded)| *bounded && *x <= none).collect();
     let open = it.coarse.on(&held).map(|face| face.deficiency());
     let (undetermined, verdict) = verdict.with(open, 0)?;
+    it.qp.kept.iter().for_each(|kept| kept.keep_directions(std::mem::take(&mut it.kept)));
     Ok(Solution { undetermined, scale, x: it.x, alpha: it.alpha, verdict, counts: it.counts })
-}
-
-enum Ended {
-    /// At the point of the iterate.
-    Here(Verdict),
-    /// With an answer by better data, correct to rounding.
-    Mended(Solution),
 }
 
 fn run(
@@ -144,8 +129,8 @@ fn run(
     limits: Limits,
     judge: &mut dyn AcceptanceTest,
     observer: &mut dyn Observer,
-) -> Result<Ended> {
-    let mut efforts = [Effort::FewSets, Effort::Interior].into_iter().peekable();
+) -> Result<Verdict> {
+    let mut efforts: &[Effort] = &[Effort::FewSets, Effort::Interior];
     loop {
         // P1 of docs/method.md: the stop
         let small = stop.residual + stop.noise * it.noise();
@@ -153,11 +138,11 @@ fn run(
         if it.split.norm() <= small || stop.plateau(it) {
             it.rebalance()?;
             if judge.accepts(&it.x, &it.alpha)? {
-                return Ok(Ended::Here(Verdict::Solved));
+                return Ok(Verdict::Solved);
             }
             let missed = judge.missed();
             if stop.stays(missed) && judge.has_better_data() {
-                return Ok(Ended::Here(Verdict::Inaccurate));
+                return Ok(Verdict::Inaccurate);
             }
             if stop.tighten_by(missed) {
                 continue;
@@ -165,7 +150,7 @@ fn run(
             it.refresh()?;
             if it.split.norm() <= small || stop.plateau(it) {
                 match stop.tighten(judge.accepts(&it.x, &it.alpha)?) {
-                    Some(verdict) => return Ok(Ended::Here(verdict)),
+                    Some(verdict) => return Ok(verdict),
                     None => continue,
                 }
             }
@@ -177,31 +162,25 @@ fn run(
             Step::Vertex { alpha } => {
                 if let Some(verdict) = stop.tighten(judge.accepts(&it.x, &alpha)?) {
                     it.alpha = alpha;
-                    return Ok(Ended::Here(verdict));
+                    return Ok(verdict);
                 }
                 StepKind::Proportioning
             }
             Step::Unbounded { .. } | Step::Stuck if judge.accepts(&it.x, &it.alpha)? => {
-                return Ok(Ended::Here(Verdict::Solved));
+                return Ok(Verdict::Solved);
             }
-            Step::Unbounded { p } => return Ok(Ended::Here(Verdict::Unbounded { p })),
-            Step::Stuck => return Ok(Ended::Here(Verdict::Stalled)),
+            Step::Unbounded { p } => return Ok(Verdict::Unbounded { p }),
+            Step::Stuck => return Ok(Verdict::Stalled),
             Step::ConjugateGradient => StepKind::ConjugateGradient,
             Step::Expansion => StepKind::Expansion,
             Step::Proportioning => StepKind::Proportioning,
         };
         observer.step(&it.progress(kind, small))?;
-        // P12: better data, once steps have cost as much
-        let pays = |effort: &Effort| judge.pays_after(*effort).is_some_and(|pays| pays <= it.counts.steps());
-        if let Some(effort) = efforts.peek().copied().filter(pays) {
-            match judge.mended(&it.solution(), effort)? {
-                Mended::Accepted(solution) => return Ok(Ended::Mended(solution)),
-                Mended::Dear => {}
-                _ => drop(efforts.next()),
-            }
+        if it.is_mended(&mut efforts, judge)? {
+            return Ok(Verdict::Solved);
         }
         if it.counts.steps() >= limits.steps {
-            return Ok(Ended::Here(Verdict::StepLimit));
+            return Ok(Verdict::StepLimit);
         }
     }
 }
@@ -210,10 +189,23 @@ fn run(
 mod tests;
 
 impl Iterate<'_> {
-    /// The present point.
-    fn solution(&self) -> Solution {
-        let (x, alpha, counts) = (self.x.clone(), self.alpha.clone(), self.counts);
-        Solution { x, alpha, undetermined: 0, scale: 0.0, verdict: Verdict::StepLimit, counts }
+    /// P12: whether better data have an answer, which then is the present point; the next effort is made once steps have cost as much.
+    fn is_mended(&mut self, efforts: &mut &[Effort], judge: &mut dyn AcceptanceTest) -> Result<bool> {
+        let Some((&effort, further)) = efforts.split_first() else { return Ok(false) };
+        if !judge.pays_after(effort).is_some_and(|pays| pays <= self.counts.steps()) {
+            return Ok(false);
+        }
+        let (x, alpha, counts, verdict) =
+            (self.x.clone(), self.alpha.clone(), self.counts, Verdict::StepLimit);
+        match judge.mended(&Solution { x, alpha, undetermined: 0, scale: 0.0, verdict, counts }, effort)? {
+            Mended::Accepted(found) => {
+                (self.x, self.alpha, self.counts.direct) = (found.x, found.alpha, found.counts.direct);
+                return Ok(true);
+            }
+            Mended::Dear => {}
+            Mended::Near(_) | Mended::Failed => *efforts = further,
+        }
+        Ok(false)
     }
 
     fn progress(&self, kind: StepKind, small: f64) -> StepReport<'_> {
