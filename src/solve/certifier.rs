@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use crate::certificate::Judgement;
-use crate::error::Result;
+use crate::error::{Kind, Result};
 use crate::linalg::vector::norm;
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
@@ -160,28 +160,34 @@ impl AcceptanceTest for Certifier<'_> {
         let (dual, faces) = (&self.recovery.ready.dual, &self.recovery.faces);
         let work = faces.sparse_work().unwrap_or_else(|| dual.factorisation_work());
         let steps = factorisations(effort)? * work / dual.step_work();
-        let can = faces.direct.limit > 0 && steps < f64::INFINITY && Rung::Faces.is_tried();
-        can.then(|| steps.ceil() as usize)
+        let can = faces.direct.limit > 0 && self.recovery.scaled.cleaned.is_none() && Rung::Faces.is_tried();
+        (can && steps < f64::INFINITY).then(|| steps.ceil() as usize)
     }
 
     fn mended(&mut self, solution: &Solution, effort: Effort) -> Result<Mended> {
         let begun = Instant::now();
+        let is_limited = factorisations(effort).is_some();
+        if is_limited {
+            match self.recovery.sparse_faces() {
+                Err(error) if error.kind != Kind::Memory => return Err(error),
+                Err(_) | Ok(None) => return Ok(Mended::Failed),
+                Ok(Some(_)) if self.pays_after(effort) > Some(solution.counts.steps()) => {
+                    return Ok(Mended::Dear);
+                }
+                Ok(Some(_)) => {}
+            }
+        }
         let mut ending = self.ending(solution.clone())?;
         self.recovery.bring_to_rest(&mut ending)?;
         let Finished { replaced, settled, inside } = finish(&self.recovery, &mut ending, effort)?;
         self.spent += begun.elapsed();
-        let is_answer = match factorisations(effort) {
-            Some(_) => replaced && settled,
-            None => replaced || ending.judgement.certificate.passed(),
+        let is_answer = match is_limited {
+            true => replaced && settled,
+            false => replaced || ending.judgement.certificate.passed(),
         };
         if !is_answer {
             interrupt::check()?;
-            let is_dear = self.pays_after(effort).is_some_and(|pays| pays > solution.counts.steps());
-            return Ok(match inside {
-                _ if is_dear => Mended::Dear,
-                Some(inside) => Mended::Near(inside),
-                None => Mended::Failed,
-            });
+            return Ok(inside.map_or(Mended::Failed, Mended::Near));
         }
         let Ending { solution, deformed, recovered, judgement } = ending;
         let point = (copied(&solution.x, "forces")?, copied(&solution.alpha, "amplitudes")?);

@@ -105,10 +105,6 @@ impl<'a, 'b> Finish<'a, 'b> {
         let Faces { qp, direct, .. } = &self.recovery.faces;
         let (mut dense, mut sets) = (direct.limit, usize::MAX);
         if let Some(factorisations) = factorisations(effort) {
-            let spent = self.ending.solution.counts.steps() as f64 * self.recovery.ready.dual.step_work();
-            if !self.sparse()?.is_some_and(|faces| factorisations * faces.work() <= spent) {
-                return Ok(());
-            }
             (dense, sets) = (0, factorisations as usize);
         }
         let point = SplitPoint::of(self.recovery, self.ending, if self.delicate { 1.0 } else { FAR })?;
@@ -310,7 +306,6 @@ mod tests {
                     delicate: true,
                     passed: true,
                     negative,
-
                     done: Finished::default(),
                 };
                 finish.correct(&mut point, FaceSolver::Dense(&face)).unwrap();

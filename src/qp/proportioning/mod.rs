@@ -192,7 +192,7 @@ impl Iterate<'_> {
     /// P12: whether better data have an answer, which then is the present point; the next effort is made once steps have cost as much.
     fn is_mended(&mut self, efforts: &mut &[Effort], judge: &mut dyn AcceptanceTest) -> Result<bool> {
         let Some((&effort, further)) = efforts.split_first() else { return Ok(false) };
-        if !judge.pays_after(effort).is_some_and(|pays| pays <= self.counts.steps()) {
+        if judge.pays_after(effort).is_none_or(|pays| pays > self.counts.steps()) {
             return Ok(false);
         }
         let (x, alpha, counts, verdict) =

@@ -81,7 +81,7 @@ impl Nodes {
     }
 
     /// Orders every connected part separately: the search for parts below a separator costs the product of the numbers of
-    /// parts and nodes. For single nodes, and for complete graphs, the order does not matter.
+    /// parts and nodes. For complete graphs, as of one or two nodes, the order does not matter.
     fn order_parts(&self) -> Result<Vec<usize>> {
         let nodes = self.count();
         let with = |i: usize| std::iter::once(i).chain(self.around(i).iter().map(|&j| j as usize));
