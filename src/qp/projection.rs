@@ -177,7 +177,8 @@ impl Target<'_> {
             let v = y[i] + rows.row_dot(i, &now.beta);
             let inside = v > 0.0 || (v == 0.0 && q > 0.0);
             slope += if inside { q * q } else { 0.0 };
-            if v != 0.0 && (v < 0.0) == (q > 0.0) && q != 0.0 {
+            let is_zero = || q.abs() <= ROUNDING * rows.row_dot_abs(i, step);
+            if v != 0.0 && (v < 0.0) == (q > 0.0) && !is_zero() {
                 turns.push((-v / q, if inside { -q * q } else { q * q }));
             }
         }
@@ -253,5 +254,31 @@ mod tests {
         let mut coarse = Coarse::of(&qp).unwrap();
         assert!(project(&qp, &mut coarse, &[0.0; 4], &[false; 4]).unwrap().is_none());
         assert_eq!(coarse.factorisations, 1);
+    }
+
+    /// phi still falls by rounding where the first row reaches its bound; the second row, whose image is 0.1 + 0.2 - 0.3, would reach its
+    /// own after a way of 1e16.
+    #[test]
+    fn a_row_whose_image_is_rounding_stops_no_step() {
+        let mut g_transposed = Csr::empty(3);
+        g_transposed.push_row([(0, -1.0)]);
+        g_transposed.push_row([(0, 0.1), (1, 0.2), (2, -0.3)]);
+        let a = Packed::zeros(2).unwrap();
+        let qp = Qp {
+            a: &a,
+            b: &[0.0; 2],
+            g_transposed: &g_transposed,
+            blocks: &[],
+            rounding: 1e-14,
+            e: &[0.0; 3],
+            bounded: &[true; 2],
+            preconditioner: None,
+            kept: None,
+        };
+        let coarse = Coarse::of(&qp).unwrap();
+        let target = Target { qp: &qp, y: &[1.0, -1.0], held: &[false; 2] };
+        let now =
+            Trial { residual: vec![1.0 + 1e-13, 0.0, 0.0], ..Trial::new(target, &coarse, vec![0.0; 3]) };
+        assert_eq!(target.minimum_along(&coarse, &now, &[1.0; 3]), Some(1.0));
     }
 }
