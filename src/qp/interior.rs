@@ -261,17 +261,7 @@ mod tests {
             .iter()
             .for_each(|g| g_transposed.push_row([(0, g[0]), (1, g[1])]));
         let a = Packed::zeros(3).unwrap();
-        let qp = Qp {
-            a: &a,
-            b: &[0.0; 3],
-            g_transposed: &g_transposed,
-            blocks: &[],
-            rounding: 1e-14,
-            e: &[1.0, 0.0],
-            bounded: &[true; 3],
-            preconditioner: None,
-            kept: None,
-        };
+        let qp = Qp::plain(&a, &[0.0; 3], &g_transposed, &[1.0, 0.0], &[true; 3]);
         let mut coarse = Coarse::of(&qp).unwrap();
         let near = |found: &[f64], known: &[f64]| found.iter().zip(known).all(|(a, b)| (a - b).abs() < 1e-5);
         let found = inside(&qp, &mut coarse, (&[0.8, 0.6, -1.0], &[false; 3]), vec![0.0; 2]).unwrap();

@@ -56,6 +56,20 @@ pub struct Qp<'a> {
     pub kept: Option<&'a BetweenSolves>,
 }
 
+impl<'a> Qp<'a> {
+    /// With single columns as blocks, G accurate to 1e-14, no preconditioner and nothing kept.
+    pub fn plain(
+        a: &'a dyn Operator,
+        b: &'a [f64],
+        g_transposed: &'a Csr,
+        e: &'a [f64],
+        bounded: &'a [bool],
+    ) -> Self {
+        let (blocks, rounding) = (&[], 1e-14);
+        Self { a, b, g_transposed, blocks, rounding, e, bounded, preconditioner: None, kept: None }
+    }
+}
+
 impl Qp<'_> {
     /// `e - G x`
     pub fn left(&self, x: &[f64]) -> Vec<f64> {

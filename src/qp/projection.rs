@@ -212,17 +212,7 @@ mod tests {
         let mut g_transposed = Csr::empty(1);
         (0..3).for_each(|_| g_transposed.push_row([(0, 1.0)]));
         let a = Packed::zeros(3).unwrap();
-        let qp = Qp {
-            a: &a,
-            b: &[0.0; 3],
-            g_transposed: &g_transposed,
-            blocks: &[],
-            rounding: 1e-14,
-            e: &[1.0],
-            bounded: &[true; 3],
-            preconditioner: None,
-            kept: None,
-        };
+        let qp = Qp::plain(&a, &[0.0; 3], &g_transposed, &[1.0], &[true; 3]);
         let mut coarse = Coarse::of(&qp).unwrap();
         let found = project(&qp, &mut coarse, &[0.8, 0.6, -1.0], &[false; 3]).unwrap().unwrap();
         for (value, expected) in found.point.iter().zip([0.6, 0.4, 0.0]) {
@@ -241,15 +231,8 @@ mod tests {
         }
         let a = Packed::zeros(4).unwrap();
         let qp = Qp {
-            a: &a,
-            b: &[0.0; 4],
-            g_transposed: &g_transposed,
             blocks: &[0, 1],
-            rounding: 1e-14,
-            e: &[-1.0, 1.0],
-            bounded: &[false, false, true, true],
-            preconditioner: None,
-            kept: None,
+            ..Qp::plain(&a, &[0.0; 4], &g_transposed, &[-1.0, 1.0], &[false, false, true, true])
         };
         let mut coarse = Coarse::of(&qp).unwrap();
         assert!(project(&qp, &mut coarse, &[0.0; 4], &[false; 4]).unwrap().is_none());
@@ -264,17 +247,7 @@ mod tests {
         g_transposed.push_row([(0, -1.0)]);
         g_transposed.push_row([(0, 0.1), (1, 0.2), (2, -0.3)]);
         let a = Packed::zeros(2).unwrap();
-        let qp = Qp {
-            a: &a,
-            b: &[0.0; 2],
-            g_transposed: &g_transposed,
-            blocks: &[],
-            rounding: 1e-14,
-            e: &[0.0; 3],
-            bounded: &[true; 2],
-            preconditioner: None,
-            kept: None,
-        };
+        let qp = Qp::plain(&a, &[0.0; 2], &g_transposed, &[0.0; 3], &[true; 2]);
         let coarse = Coarse::of(&qp).unwrap();
         let target = Target { qp: &qp, y: &[1.0, -1.0], held: &[false; 2] };
         let now =

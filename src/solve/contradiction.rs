@@ -48,17 +48,7 @@ pub fn contradiction(case: Case, gaps: &Gaps) -> Result<Option<Error>> {
     let a = Alternative { matrix: &matrix, metric: &rows.metric, c: &c };
     let b: Vec<f64> = c.iter().map(|c| -c).collect();
     let none = Csr { ptr: vec![0; c.len() + 1], ..Csr::default() };
-    let qp = Qp {
-        a: &a,
-        b: &b,
-        g_transposed: &none,
-        blocks: &[],
-        rounding: 1e-14,
-        e: &[],
-        bounded: &bounded,
-        preconditioner: None,
-        kept: None,
-    };
+    let qp = Qp::plain(&a, &b, &none, &[], &bounded);
     let steps = (WORK / (4 * matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
     let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
     let mut judge = Unjudged { scale: norm(&b) };

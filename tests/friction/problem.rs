@@ -70,17 +70,7 @@ impl Given {
     }
 
     pub fn problem(&self) -> FrictionProblem<'_> {
-        let qp = Qp {
-            a: &self.f,
-            b: &self.d,
-            g_transposed: &self.g_transposed,
-            blocks: &[],
-            rounding: 1e-14,
-            e: &self.e,
-            bounded: &[],
-            preconditioner: None,
-            kept: None,
-        };
+        let qp = Qp::plain(&self.f, &self.d, &self.g_transposed, &self.e, &[]);
         FrictionProblem {
             qp,
             cones: &self.cones,

@@ -150,17 +150,7 @@ fn found(n: usize, push: f64) -> Found {
     let e = [unit * pressed, unit * pushed * ALONG[0], unit * pushed * ALONG[1]];
     let node = |i: usize| Node::new(Some(3 * i), &[3 * i + 1, 3 * i + 2], MU, 0.0).unwrap();
     let cones = Cones::new(m, (0..n * n).map(node).collect()).unwrap();
-    let qp = Qp {
-        a: &spheres.influence,
-        b: &d,
-        g_transposed: &g_transposed,
-        blocks: &[],
-        rounding: 1e-14,
-        e: &e,
-        bounded: &[],
-        preconditioner: None,
-        kept: None,
-    };
+    let qp = Qp::plain(&spheres.influence, &d, &g_transposed, &e, &[]);
     let problem = FrictionProblem { qp, cones: &cones, preconditioner: Some(&spheres.inverse) };
     let limits = FrictionLimits { tolerance: 1e-9, products: 1000, direct: None };
     let found = friction(problem, limits, FrictionStart::default(), &mut Content, &mut Content).unwrap();

@@ -63,17 +63,7 @@ fn run(program: &Program, gamma: f64, variant: Variant, limit: usize) -> Option<
     let (m, mut none) = (program.b.len(), Csr::empty(0));
     (0..m).for_each(|_| none.push_row([]));
     let bounded = vec![true; m];
-    let qp = Qp {
-        blocks: &[],
-        a: &program.a,
-        b: &program.b,
-        g_transposed: &none,
-        rounding: 1e-14,
-        e: &[],
-        bounded: &bounded,
-        preconditioner: None,
-        kept: None,
-    };
+    let qp = Qp::plain(&program.a, &program.b, &none, &[], &bounded);
     let mut q = Quadratic::theta(qp);
     let rule = PaperRule { gamma, variant, extrapolation: 5.0 };
     let mut run = Proportioning::new(&mut q, vec![1.0; m], rule).unwrap();

@@ -77,7 +77,7 @@ impl Program {
 
     pub fn qp<'a>(&'a self, g_transposed: &'a Csr, preconditioner: Option<&'a dyn Preconditioner>) -> Qp<'a> {
         let Self { a, b, e, bounded, .. } = self;
-        Qp { a, b, g_transposed, blocks: &[], rounding: 1e-14, e, bounded, preconditioner, kept: None }
+        Qp { preconditioner, ..Qp::plain(a, b, g_transposed, e, bounded) }
     }
 
     pub fn residuals(&self, x: &[f64], alpha: &[f64]) -> Residuals {

@@ -71,17 +71,7 @@ impl AcceptanceTest for Content {
 fn run(program: &Program, start: &[f64], products: usize, then: Kind, diary: &mut Diary) -> Result<Solution> {
     let a = Limited { a: &program.a, left: AtomicUsize::new(products), then };
     let g_transposed = program.g_transposed();
-    let qp = Qp {
-        blocks: &[],
-        a: &a,
-        b: &program.b,
-        g_transposed: &g_transposed,
-        rounding: 1e-14,
-        e: &program.e,
-        bounded: &program.bounded,
-        preconditioner: None,
-        kept: None,
-    };
+    let qp = Qp::plain(&a, &program.b, &g_transposed, &program.e, &program.bounded);
     let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 5000 };
     minimise(qp, start, limits, &mut Content, diary)
 }
@@ -159,17 +149,7 @@ fn the_observer_sees_every_step_with_a_functional_that_falls_and_may_end_the_run
 fn a_run_ends_with_the_last_step_that_it_may_take() {
     let program = program(5);
     let g_transposed = program.g_transposed();
-    let qp = Qp {
-        blocks: &[],
-        a: &program.a,
-        b: &program.b,
-        g_transposed: &g_transposed,
-        rounding: 1e-14,
-        e: &program.e,
-        bounded: &program.bounded,
-        preconditioner: None,
-        kept: None,
-    };
+    let qp = Qp::plain(&program.a, &program.b, &g_transposed, &program.e, &program.bounded);
     for steps in [1, 2, 5] {
         let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps };
         let ended = minimise(qp, &[0.0; 24], limits, &mut Content, &mut Diary::default()).unwrap();

@@ -154,17 +154,8 @@ mod tests {
         let mut g_transposed = Csr::empty(2);
         columns.iter().for_each(|c| g_transposed.push_row([(0, c[0]), (1, c[1])]));
         let (a, m) = (Packed::zeros(columns.len()).unwrap(), columns.len());
-        let qp = Qp {
-            a: &a,
-            b: &vec![0.0; m],
-            g_transposed: &g_transposed,
-            blocks: &[],
-            rounding: 1e-14,
-            e: &e,
-            bounded: &vec![true; m],
-            preconditioner: None,
-            kept: None,
-        };
+        let (b, bounded) = (vec![0.0; m], vec![true; m]);
+        let qp = Qp::plain(&a, &b, &g_transposed, &e, &bounded);
         let cones = Cones::half_lines(qp.bounded).unwrap();
         let found = unheld(&qp, &cones, &[1.0; 2]).unwrap();
         let (_, other) = by_newton(&qp, &cones).unwrap();

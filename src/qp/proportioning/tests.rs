@@ -45,9 +45,7 @@ fn solve(a: &dyn Operator, b: &[f64], start: &[f64], kept: Option<&BetweenSolves
     let mut g_transposed = Csr::empty(2);
     (0..M).for_each(|i| g_transposed.push_row([(0, 1.0), (1, i as f64 / M as f64)]));
     let (e, bounded) = ([30.0, 14.0], (0..M).map(|i| i % 3 > 0).collect::<Vec<_>>());
-    let (g_transposed, e, bounded) = (&g_transposed, &e, &bounded);
-    let (blocks, preconditioner) = (&[][..], None);
-    let qp = Qp { a, b, g_transposed, blocks, rounding: 1e-14, e, bounded, preconditioner, kept };
+    let qp = Qp { kept, ..Qp::plain(a, b, &g_transposed, &e, &bounded) };
     let (mut judge, mut observer) = (Lenient { allowed: 0 }, Lenient { allowed: LIMITS.steps });
     minimise(qp, start, LIMITS, &mut judge, &mut observer).unwrap()
 }
