@@ -13,12 +13,12 @@ const ROUNDED: f64 = 1e-12;
 /// Entries of a row below this part of the largest are rounding: the row depends on others that are held.
 const ROUNDING: f64 = 1e-13;
 
-/// A direction and its image.
-type Pair = (Vec<f64>, Vec<f64>);
+/// A direction p and, behind it, its image A p.
+type Pair = Box<[f64]>;
 
 #[derive(Default)]
 pub struct Conjugate {
-    /// Pairs (p, A p), oldest first.
+    /// Oldest first.
     pairs: Vec<Pair>,
     /// sigma: the largest power of two that does not exceed the Rayleigh quotient of the first direction, so that powers
     /// of two in A change no other bit.
@@ -36,38 +36,38 @@ impl Conjugate {
 
     /// Adds (p, A p) after removing the part that is not conjugate to the others.
     pub fn push(&mut self, p: &[f64], image: &[f64]) {
-        let (mut p, mut image) = (p.to_vec(), image.to_vec());
-        let whole = dot(&p, &image);
-        for pairs in self.groups(p.len()) {
-            let shares = self.shares(&directions(pairs), &image, -1.0);
+        let (m, whole) = (p.len(), dot(p, image));
+        let mut pair: Pair = [p, image].concat().into();
+        for pairs in self.groups(m) {
+            let shares = self.shares(&directions(pairs), &pair[m..], -1.0);
             let rounded = ROUNDED * (whole / self.curvature).sqrt();
-            if p.len() < LONG || norm_max(&shares) > rounded {
-                add_multiples(&shares, &directions(pairs), &mut p);
-                add_multiples(&shares, &images(pairs), &mut image);
+            if m < LONG || norm_max(&shares) > rounded {
+                add_multiples(&shares, &both(pairs), &mut pair);
             }
         }
-        let curvature = dot(&p, &image);
+        let (p, image) = pair.split_at(m);
+        let curvature = dot(p, image);
         if whole > 0.0 && curvature > NEW * whole {
             if self.pairs.is_empty() {
-                self.curvature = power_of_two_below(curvature / dot(&p, &p));
+                self.curvature = power_of_two_below(curvature / dot(p, p));
             }
             let length = (curvature / self.curvature).sqrt();
-            p.iter_mut().chain(&mut image).for_each(|v| *v /= length);
+            pair.iter_mut().for_each(|v| *v /= length);
             if self.pairs.len() == MOST {
                 self.pairs.remove(0);
             }
             // small problems, of which there may be very many, keep one
             self.pairs.reserve_exact(1);
-            self.pairs.push((p, image));
+            self.pairs.push(pair);
         }
     }
 
     /// `d = sum p_i p_i'g / sigma` and A d: `x - d` has the least theta on x + span. `None` without directions.
     pub fn minimiser(&self, g: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let (mut d, mut image) = (vec![0.0; g.len()], vec![0.0; g.len()]);
+        let mut d = vec![0.0; 2 * g.len()];
         let shares = self.shares(&directions(&self.pairs), g, 1.0);
-        add_multiples(&shares, &directions(&self.pairs), &mut d);
-        add_multiples(&shares, &images(&self.pairs), &mut image);
+        add_multiples(&shares, &both(&self.pairs), &mut d);
+        let image = d.split_off(g.len());
         (!self.pairs.is_empty()).then_some((d, image))
     }
 
@@ -84,7 +84,7 @@ impl Conjugate {
 
     /// Some direction has an entry in row i.
     pub fn moves(&self, i: usize) -> bool {
-        self.pairs.iter().any(|(p, _)| p[i] != 0.0)
+        self.pairs.iter().any(|pair| pair[i] != 0.0)
     }
 
     pub fn is_empty(&self) -> bool {
@@ -98,36 +98,34 @@ impl Conjugate {
     /// Keeps the directions of the span that are zero on row i: one fewer than before, by a reflection that maps the row
     /// to (0, ..., 0, length).
     pub fn hold(&mut self, i: usize) {
-        let mut w: Vec<f64> = self.pairs.iter().map(|(p, _)| p[i]).collect();
+        let mut w: Vec<f64> = self.pairs.iter().map(|pair| pair[i]).collect();
         let Some(&last) = w.last() else { return };
         let length = norm(&w);
-        if length <= ROUNDING * self.pairs.iter().map(|(p, _)| norm_max(p)).fold(0.0, f64::max) {
-            self.pairs.iter_mut().for_each(|(p, _)| p[i] = 0.0);
+        if length <= ROUNDING * directions(&self.pairs).into_iter().map(norm_max).fold(0.0, f64::max) {
+            self.pairs.iter_mut().for_each(|pair| pair[i] = 0.0);
             return;
         }
         let k = w.len() - 1;
         w[k] += length.copysign(last);
         let scale = 2.0 / dot(&w, &w);
-        let mut sum = (vec![0.0; self.pairs[0].0.len()], vec![0.0; self.pairs[0].0.len()]);
-        for ((p, image), w) in self.pairs.iter().zip(&w) {
-            axpy(*w, p, &mut sum.0);
-            axpy(*w, image, &mut sum.1);
-        }
-        for ((p, image), w) in self.pairs.iter_mut().zip(&w) {
-            axpy(-scale * w, &sum.0, p);
-            axpy(-scale * w, &sum.1, image);
-        }
+        let mut sum = vec![0.0; self.pairs[0].len()];
+        self.pairs.iter().zip(&w).for_each(|(pair, w)| axpy(*w, pair, &mut sum));
+        self.pairs.iter_mut().zip(&w).for_each(|(pair, w)| axpy(-scale * w, &sum, pair));
         self.pairs.pop();
-        self.pairs.iter_mut().for_each(|(p, _)| p[i] = 0.0);
+        self.pairs.iter_mut().for_each(|pair| pair[i] = 0.0);
     }
 }
 
 fn directions(pairs: &[Pair]) -> Vec<&[f64]> {
-    pairs.iter().map(|(p, _)| &p[..]).collect()
+    pairs.iter().map(|pair| &pair[..pair.len() / 2]).collect()
 }
 
 fn images(pairs: &[Pair]) -> Vec<&[f64]> {
-    pairs.iter().map(|(_, image)| &image[..]).collect()
+    pairs.iter().map(|pair| &pair[pair.len() / 2..]).collect()
+}
+
+fn both(pairs: &[Pair]) -> Vec<&[f64]> {
+    pairs.iter().map(|pair| &pair[..]).collect()
 }
 
 #[cfg(test)]
@@ -149,9 +147,10 @@ mod tests {
     }
 
     fn assert_conjugate(kept: &Conjugate) {
-        for (j, (p, of_p)) in kept.pairs.iter().enumerate() {
+        for (j, pair) in kept.pairs.iter().enumerate() {
+            let (p, of_p) = pair.split_at(5);
             assert!(image(p).iter().zip(of_p).all(|(a, b)| (a - b).abs() < 1e-14), "the image of {p:?}");
-            for (k, (_, other)) in kept.pairs.iter().enumerate() {
+            for (k, other) in images(&kept.pairs).into_iter().enumerate() {
                 let expected = if j == k { kept.curvature } else { 0.0 };
                 assert!((dot(p, other) - expected).abs() < 1e-14, "{j} {k}");
             }
@@ -165,7 +164,7 @@ mod tests {
         kept.hold(3);
         assert_eq!(kept.pairs.len(), 2);
         assert_conjugate(&kept);
-        assert!(kept.pairs.iter().all(|(p, _)| p[3] == 0.0));
+        assert!(kept.pairs.iter().all(|pair| pair[3] == 0.0));
     }
 
     #[test]
@@ -173,14 +172,14 @@ mod tests {
         let (kept, mut g) = (kept(), vec![1.0, -2.0, 0.5, 3.0, 1.0]);
         let (_, of_d) = kept.minimiser(&g).unwrap();
         axpy(-1.0, &of_d, &mut g);
-        assert!(kept.pairs.iter().all(|(p, _)| dot(p, &g).abs() < 1e-14));
+        assert!(directions(&kept.pairs).into_iter().all(|p| dot(p, &g).abs() < 1e-14));
         assert!(Conjugate::default().minimiser(&g).is_none());
     }
 
     #[test]
     fn a_direction_of_the_span_is_not_kept_twice() {
         let mut kept = kept();
-        let p: Vec<f64> = (0..5).map(|i| kept.pairs[0].0[i] - 3.0 * kept.pairs[2].0[i]).collect();
+        let p: Vec<f64> = (0..5).map(|i| kept.pairs[0][i] - 3.0 * kept.pairs[2][i]).collect();
         kept.push(&p, &image(&p));
         assert_eq!(kept.pairs.len(), 3);
     }

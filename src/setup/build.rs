@@ -13,7 +13,6 @@ use crate::linalg::hash::Shared;
 use crate::model::{Lengths, Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
-use crate::qp::friction::PairsBetween;
 use crate::qp::BetweenSolves;
 use crate::setup::islands::{islands, Island, Members};
 use crate::setup::operators::Operators;
@@ -51,7 +50,7 @@ impl Prepared {
             island.refresh(&lengths);
             check_compliance(&island)?;
             let Metric { values, carried } = metric(model, &island)?;
-            for (&p, range) in island.bodies.iter().zip(&island.ranges) {
+            for (&p, range) in island.bodies.iter().zip(&*island.ranges) {
                 let [first, end] = [range.start, range.end].map(|end| carried.partition_point(|j| *j < end));
                 if first < end {
                     let by = ratio_of_units(model, &island, p);
@@ -63,7 +62,7 @@ impl Prepared {
             let (mut own, compliance) = DualRows::of(&island, values, coupled(&model.settings))?;
             own.uneven |= !carried.is_empty();
             own.level_gaps(&mut island, &lengths);
-            let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix, own.first_tangential());
+            let counts = Dual::distinct_rows(island.ranges.to_vec(), &own.matrix, own.first_tangential());
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
             with_rows.push((Box::new(island), known.share(own.key(), own, DualRows::eq), compliance));
         }
@@ -118,7 +117,7 @@ impl Prepared {
         let (mut island_of, mut number_in) = (vec![0; model.bodies.len()], vec![0; model.bodies.len()]);
         for (k, (island, rows, _)) in islands.iter().enumerate() {
             let mut parts = reserved(island.bodies.len(), "groups of bodies")?;
-            for (number, (&p, range)) in island.bodies.iter().zip(&island.ranges).enumerate() {
+            for (number, (&p, range)) in island.bodies.iter().zip(&*island.ranges).enumerate() {
                 (island_of[p], number_in[p]) = (k, number);
                 let by = ratio_of_units(model, island, p);
                 let Some(inverse) = self.bodies[p].inverse.as_mut() else { continue };
@@ -151,6 +150,7 @@ impl Prepared {
             let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
             let of_part = |part: usize| inverse(part).map(|of| (&of.kplus, &of.grounded));
             let whole = Whole::of(model, &island, &of_part)?;
+            let pairs = (!island.friction.numbers.is_empty()).then(Box::default);
             ready.push(Ready {
                 island,
                 dual,
@@ -158,7 +158,7 @@ impl Prepared {
                 whole: whole.map(Box::new),
                 preconditioner: None,
                 kept: BetweenSolves::default(),
-                pairs: PairsBetween::default(),
+                pairs,
             });
         }
         Ok(Duals { of: model.revisions, islands: ready, operators, island_of })
@@ -182,7 +182,7 @@ fn metric(model: &Model, island: &Island) -> Result<Metric> {
         let body = &model.bodies[p].body;
         Some((range.start, body.k()?, body.without(island.unit)))
     };
-    let bodies: Vec<_> = island.bodies.iter().zip(&island.ranges).filter_map(of_body).collect();
+    let bodies: Vec<_> = island.bodies.iter().zip(&*island.ranges).filter_map(of_body).collect();
     Metric::of(&bodies, RowKind::ALL.map(|kind| &island.members(kind).rows), &|_, _| true, island.unit)
 }
 

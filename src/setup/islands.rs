@@ -8,7 +8,7 @@ use crate::certificate::{Certificate, Entry};
 use crate::constraints::{Friction, FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::graph::joined;
-use crate::linalg::hash::Shared;
+use crate::linalg::hash::{hash, Shared, START};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
 use crate::model::{Lengths, Model};
@@ -20,9 +20,9 @@ const WHAT: &str = "groups of bodies";
 #[derive(Clone)]
 pub struct Island {
     /// Numbers of the bodies, ascending.
-    pub bodies: Vec<usize>,
-    /// Unknowns of each body among those of the island.
-    pub ranges: Vec<Range<usize>>,
+    pub bodies: Box<[usize]>,
+    /// Unknowns of each body among those of the island; equal islands share them.
+    pub ranges: Arc<Vec<Range<usize>>>,
     pub contact: Members,
     /// Shared by the islands without equality rows.
     pub equalities: Arc<Members>,
@@ -109,7 +109,7 @@ impl Island {
     /// The loads of its bodies one after the other, force.
     pub fn loads(&self, model: &Model) -> Result<Vec<f64>> {
         let mut all = zeros(self.unknowns(), "the loads")?;
-        for (&p, range) in self.bodies.iter().zip(&self.ranges) {
+        for (&p, range) in self.bodies.iter().zip(&*self.ranges) {
             if let Some(load) = &model.bodies[p].body.load {
                 all[range.clone()].copy_from_slice(load);
             }
@@ -126,7 +126,7 @@ impl Island {
 
     /// Copies values over the unknowns of the island to values over all unknowns.
     pub fn scatter(&self, model: &Model, own: &[f64], all: &mut [f64]) {
-        for (&p, range) in self.bodies.iter().zip(&self.ranges) {
+        for (&p, range) in self.bodies.iter().zip(&*self.ranges) {
             all[model.range(p)].copy_from_slice(&own[range.clone()]);
         }
     }
@@ -223,7 +223,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         count = all;
     }
     let mut islands = vec![Island::empty(); count];
-    let mut start = filled(bodies, 0, WHAT)?;
+    let (mut start, mut shapes) = (filled(bodies, 0, WHAT)?, Shared::default());
     for (island, bodies) in islands.iter_mut().zip(members(count, of_body.iter().copied().zip(0..))) {
         let mut end = 0;
         let range = |&p: &usize| {
@@ -231,8 +231,10 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
             end += model.bodies[p].body.order;
             start[p]..end
         };
-        island.ranges = bodies.iter().map(range).collect();
-        island.bodies = bodies;
+        let ranges: Vec<Range<usize>> = bodies.iter().map(range).collect();
+        let key = hash(START, ranges.iter().map(|range| range.end as u64));
+        island.ranges = shapes.share(key, ranges, Vec::eq);
+        island.bodies = bodies.into();
     }
     let place = |j: usize| start[body_of(j)] + j - offsets[body_of(j)];
     let mut known = Shared::default();
@@ -338,7 +340,7 @@ fn restricted(
 impl Island {
     fn empty() -> Self {
         let (contact, equalities, friction) = Default::default();
-        Self { bodies: Vec::new(), ranges: Vec::new(), contact, equalities, friction, unit: 1.0 }
+        Self { bodies: [].into(), ranges: Arc::default(), contact, equalities, friction, unit: 1.0 }
     }
 }
 
@@ -369,7 +371,7 @@ mod tests {
         let equal = RowsInput { ptr: &[0, 2], body: None, dof: &[6, 1], val: &[1.0, -1.0], rhs: None };
         model.add_rows(RowKind::Equality, equal).unwrap();
         let islands = islands(&model).unwrap();
-        let bodies: Vec<_> = islands.iter().map(|island| island.bodies.clone()).collect();
+        let bodies: Vec<_> = islands.iter().map(|island| island.bodies.to_vec()).collect();
         assert_eq!(bodies, [vec![0, 3], vec![1, 4], vec![2]]);
         let [first, second, third] = &islands[..] else { panic!("{bodies:?}") };
         assert_eq!((first.contact.numbers.as_slice(), first.unit), (&[0][..], 2.0));

@@ -83,7 +83,8 @@ impl Prepared {
 
     /// Drops the data that solves with friction have left for the next solve.
     pub fn forget_pairs(&mut self) {
-        self.duals.iter().flat_map(|duals| &duals.islands).for_each(|ready| ready.pairs.forget());
+        let islands = self.duals.iter().flat_map(|duals| &duals.islands);
+        islands.filter_map(|ready| ready.pairs.as_ref()).for_each(|pairs| pairs.forget());
     }
 
     /// Drops all data: the numbers of the bodies have changed.
@@ -128,8 +129,8 @@ impl Prepared {
     /// Drops the dual problems; their operators are kept for later rows.
     pub(super) fn release(&mut self) {
         for ready in self.duals.take().into_iter().flat_map(|duals| duals.islands) {
-            for (p, operator) in ready.island.bodies.into_iter().zip(ready.dual.operators()) {
-                if let Some(inverse) = &mut self.bodies[p].inverse {
+            for (p, operator) in ready.island.bodies.iter().zip(ready.dual.operators()) {
+                if let Some(inverse) = &mut self.bodies[*p].inverse {
                     inverse.operator = operator;
                 }
             }

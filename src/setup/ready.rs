@@ -28,8 +28,8 @@ pub struct Ready {
     pub preconditioner: Option<Box<(Preconditioning, Preconditioner)>>,
     /// Data that a solve leaves for the next one.
     pub kept: BetweenSolves,
-    /// Data that a solve with friction leaves for the next one.
-    pub pairs: PairsBetween,
+    /// Data that a solve with friction leaves for the next one; none without friction.
+    pub pairs: Option<Box<PairsBetween>>,
 }
 
 impl Ready {

@@ -46,7 +46,7 @@ impl<'a> Case<'a> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
         let (model, island) = (self.model, self.island());
         let mut bodies = Vec::with_capacity(island.bodies.len());
-        for (&p, range) in island.bodies.iter().zip(&island.ranges) {
+        for (&p, range) in island.bodies.iter().zip(&*island.ranges) {
             let body = &model.bodies[p].body;
             let inverse = self.prepared.inverse(model, p).ok_or_else(missing)?;
             bodies.push(BodyData {

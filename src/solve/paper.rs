@@ -72,7 +72,7 @@ impl HostUnits {
         scale.resize(ready.dual.order(), 1.0);
         let mut basis = Vec::with_capacity(ready.island.bodies.len());
         let Island { bodies, ranges, unit, .. } = &*ready.island;
-        for (k, (&p, range)) in bodies.iter().zip(ranges).enumerate() {
+        for (k, (&p, range)) in bodies.iter().zip(&**ranges).enumerate() {
             let own = unit / case.prepared.inverse(case.model, p).map_or(*unit, |inverse| inverse.unit);
             let metric: Vec<f64> = ready.rows.metric[range.clone()].iter().map(|d| own * d).collect();
             let mut t = change_of_basis(case, p, &metric)?;

@@ -68,7 +68,7 @@ impl Whole {
         let (mut bodies, mut ranges): (Vec<usize>, Vec<Range<usize>>) = Default::default();
         let (mut body_of, mut place) = (reserved(cut.bodies.len(), WHAT)?, reserved(cut.unknowns(), WHAT)?);
         let (mut part_of, mut end) = (Vec::new(), 0);
-        for (&part, own) in cut.bodies.iter().zip(&cut.ranges) {
+        for (&part, own) in cut.bodies.iter().zip(&*cut.ranges) {
             let (body, is_cut) = (parts.parts[part].body, model.is_piece(part));
             if !is_cut || bodies.last() != Some(&body) {
                 let unknowns = if is_cut { parts.offsets[body + 1] - parts.offsets[body] } else { own.len() };
@@ -98,6 +98,7 @@ impl Whole {
             tangential: of_host(RowKind::Tangential)?,
         });
         let equalities = Arc::new(equalities);
+        let (bodies, ranges) = (bodies.into(), Arc::new(ranges));
         let island = Island { bodies, ranges, contact, equalities, friction, unit };
         let bodies = threads::run(model.threads(), island.bodies.len(), |k| {
             let (body, part) = (island.bodies[k], part_of[k]);
@@ -139,7 +140,7 @@ impl Whole {
         let missing = || Error::new(Kind::State, "a body has not been set up");
         let parts = model.parts.as_ref().ok_or_else(missing)?;
         let mut bodies = reserved(self.bodies.len(), WHAT)?;
-        for ((&body, own), range) in self.island.bodies.iter().zip(&self.bodies).zip(&self.island.ranges) {
+        for ((&body, own), range) in self.island.bodies.iter().zip(&self.bodies).zip(&*self.island.ranges) {
             let stiffness = match (&parts.assembled[body], own.part) {
                 (Some(k), _) => Some(crate::body::Stiffness::Assembled(k)),
                 (None, Some(part)) => model.bodies[part].body.k(),

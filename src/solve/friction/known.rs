@@ -11,7 +11,7 @@ use crate::solve::gaps::Gaps;
 /// Products with F of conjugate gradients in which closed and sticking nodes, slip directions and slips of the last answer are known:
 /// cold, with the preconditioner, rows and tolerance of that solve. None where no solve has left an answer since.
 pub fn on_known_states(ready: &Ready, settings: &Settings, qp: Qp, gaps: &Gaps) -> Result<Option<usize>> {
-    let Some(answer) = ready.pairs.take_answer() else { return Ok(None) };
+    let Some(answer) = ready.pairs.as_ref().and_then(|pairs| pairs.take_answer()) else { return Ok(None) };
     let near = Restricted::new(qp, &answer.rows);
     let cones = cones(ready, gaps, &answer.rows)?;
     let preconditioner =

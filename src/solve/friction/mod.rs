@@ -42,7 +42,8 @@ pub fn solve_with_friction(
         direct: (means.direct.limit > 0).then_some(means.direct),
     };
     let start = near.start(start);
-    let kept = ready.pairs.take(rows);
+    let pairs = ready.pairs.as_deref();
+    let kept = pairs.and_then(|pairs| pairs.take(rows));
     let is_warm = start.iter().any(|x| *x != 0.0);
     let start = FrictionStart {
         x: is_warm.then_some(&start[..]),
@@ -54,12 +55,11 @@ pub fn solve_with_friction(
     if let (Verdict::Stalled, Some(slide)) = (&found.verdict, &found.slide) {
         return Err(named(case, slide, found.counts.starts)?);
     }
-    ready.pairs.keep(rows, std::mem::take(&mut found.pairs), ready.dual.product_work());
-    ready.pairs.keep_answer(DualAnswer {
-        rows: rows.to_vec(),
-        x: found.x.clone(),
-        alpha: found.alpha.clone(),
-    });
+    if let Some(pairs) = pairs {
+        pairs.keep(rows, std::mem::take(&mut found.pairs), ready.dual.product_work());
+        let (x, alpha) = (found.x.clone(), found.alpha.clone());
+        pairs.keep_answer(DualAnswer { rows: rows.to_vec(), x, alpha });
+    }
     let x = near.spread(&found.x);
     // rows without force, and tangential rows of nodes that no friction holds
     let mut held = vec![true; x.len()];
