@@ -120,8 +120,9 @@ impl Prepared {
             for (number, (&p, range)) in island.bodies.iter().zip(&*island.ranges).enumerate() {
                 (island_of[p], number_in[p]) = (k, number);
                 let by = ratio_of_units(model, island, p);
-                let Some(inverse) = self.bodies[p].inverse.as_mut() else { continue };
-                let (kplus, kept) = (Arc::clone(&inverse.kplus), inverse.operator.take());
+                let own = &mut self.bodies[p];
+                let Some(inverse) = &own.inverse else { continue };
+                let (kplus, kept) = (Arc::clone(&inverse.kplus), own.operator.take());
                 let (size, implicit) = (operators.sizes[p], operators.implicit[p]);
                 parts.push(dual::BodyShare { range: range.clone(), kplus, by, kept, size, implicit });
             }

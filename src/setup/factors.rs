@@ -123,19 +123,17 @@ impl Prepared {
             self.work.factorisations += made.factorisations;
             self.bodies[p].symbolic = Some(made.symbolic);
             let (unit, kplus) = (model.bodies[p].body.unit(), Arc::new(made.inverse));
-            self.bodies[p].inverse = Some(Inverse { unit, kplus, grounded, bytes, operator: None });
+            self.bodies[p].inverse = Some(Arc::new(Inverse { unit, kplus, grounded, bytes }));
         })?;
         for (p, plan, q) in others {
             let (unit, symbolic) = (model.bodies[p].body.unit(), self.bodies[q].symbolic.clone());
-            let share = |of: &Inverse| Ok((of.bytes, plan.with_factor_of(&of.kplus)?));
+            let share = |of: &Arc<Inverse>| Ok((of.bytes, plan.with_factor_of(&of.kplus)?));
             let of = self.bodies[q].inverse.as_ref().map(share).transpose()?;
             self.bodies[p].symbolic = symbolic;
             let grounded =
                 grounded_in(model.bodies[p].body.stiffness.as_ref(), self.bodies[p].pilots.as_deref())?;
-            self.bodies[p].inverse = of.map(|(bytes, kplus)| {
-                let kplus = Arc::new(kplus);
-                Inverse { unit, kplus, grounded, bytes, operator: None }
-            });
+            self.bodies[p].inverse =
+                of.map(|(bytes, kplus)| Arc::new(Inverse { unit, kplus: Arc::new(kplus), grounded, bytes }));
         }
         Ok(())
     }
@@ -253,14 +251,8 @@ impl Prepared {
         for (p, &representative) in
             representatives.iter().enumerate().filter(|(p, representative)| p != *representative)
         {
-            let (symbolic, inverse) =
-                (self.bodies[representative].symbolic.clone(), self.bodies[representative].inverse.as_ref());
-            let inverse = inverse.map(|of| {
-                let (kplus, grounded) = (Arc::clone(&of.kplus), Arc::clone(&of.grounded));
-                Inverse { kplus, grounded, operator: None, ..*of }
-            });
-            self.bodies[p].inverse = inverse;
-            self.bodies[p].symbolic = symbolic;
+            self.bodies[p].inverse = self.bodies[representative].inverse.clone();
+            self.bodies[p].symbolic = self.bodies[representative].symbolic.clone();
         }
     }
 
@@ -285,11 +277,10 @@ impl Prepared {
         let sizes: Vec<Size> = (0..rows.len()).map(size).collect();
         let operators = Operators::new(settings, sizes, there.saturating_add(more));
         let more = more.saturating_add(operators.bytes);
-        let inverses = self.bodies.iter().filter_map(|own| own.inverse.as_ref());
-        let kept: usize =
-            inverses.filter_map(|inverse| inverse.operator.as_ref()).map(|kept| kept.bytes()).sum();
+        let kept = self.bodies.iter().filter_map(|own| own.operator.as_ref());
+        let kept: usize = kept.map(|kept| kept.bytes()).sum();
         if kept > 0 && check_memory(settings, there, more.saturating_add(kept)).is_err() {
-            self.bodies.iter_mut().filter_map(|own| own.inverse.as_mut()).for_each(|of| of.operator = None);
+            self.bodies.iter_mut().for_each(|own| own.operator = None);
         }
         check_memory(settings, there, more).map_err(|error| operators.named(error))?;
         Ok(operators)

@@ -41,7 +41,7 @@ impl Prepared {
             let unit = model.bodies[p].body.unit();
             let inverse = made.map(|made| {
                 let (kplus, grounded) = (Arc::new(made), Arc::from([]));
-                Inverse { unit, kplus, grounded, bytes, operator: None }
+                Arc::new(Inverse { unit, kplus, grounded, bytes })
             });
             self.bodies[p].inverse = inverse;
         }

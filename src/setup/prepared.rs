@@ -26,7 +26,10 @@ pub struct Prepared {
 #[derive(Default)]
 pub struct PreparedBody {
     of: BodyRevisions,
-    pub inverse: Option<Inverse>,
+    /// Equal bodies share it.
+    pub inverse: Option<Arc<Inverse>>,
+    /// `F_p` of the previous rows, with K+ and while there is no dual problem.
+    pub operator: Option<Box<Kept>>,
     /// Its carried unknowns: K+ holds them.
     pub pilots: Option<Box<Pilots>>,
     /// The last analysis of a matrix with this pattern.
@@ -36,15 +39,13 @@ pub struct PreparedBody {
 }
 
 /// `K_p+` of the matrix divided by `unit`, the largest power of two that does not exceed its largest diagonal entry, and
-/// its bytes; equal bodies share it.
+/// its bytes.
 pub struct Inverse {
     pub unit: f64,
     pub kplus: Arc<GeneralizedInverse>,
     /// Grounded unknowns of the matrix, which the certificate judges separately, ascending.
     pub grounded: Arc<[u32]>,
     pub bytes: usize,
-    /// `F_p` of the previous rows, while there is no dual problem.
-    pub operator: Option<Box<Kept>>,
 }
 
 /// The dual problems of all islands, ready for any load and gap.
@@ -100,7 +101,7 @@ impl Prepared {
     /// K+ of the present body, if made.
     pub fn inverse(&self, model: &Model, body: usize) -> Option<&Inverse> {
         let own = self.bodies.get(body).filter(|own| own.of == model.bodies[body].revisions);
-        own?.inverse.as_ref()
+        own?.inverse.as_deref()
     }
 
     /// Drops data of old revisions, except data that can be reused.
@@ -113,16 +114,18 @@ impl Prepared {
             let now = given.revisions;
             own.symbolic.take_if(|_| own.of.analysed != now.analysed);
             own.keys.take_if(|_| own.of.stiffness != now.stiffness);
-            own.inverse.take_if(|_| own.of != now);
-            own.of = now;
+            if own.of != now {
+                (own.inverse, own.operator, own.of) = (None, None, now);
+            }
         }
     }
 
     /// Takes the carried unknowns of every body; drops K+ of those that hold others.
     pub(super) fn carry(&mut self, pilots: Vec<Option<Box<Pilots>>>) {
         for (own, pilots) in self.bodies.iter_mut().zip(pilots) {
-            own.inverse.take_if(|_| own.pilots != pilots);
-            own.pilots = pilots;
+            if own.pilots != pilots {
+                (own.inverse, own.operator, own.pilots) = (None, None, pilots);
+            }
         }
     }
 
@@ -130,9 +133,8 @@ impl Prepared {
     pub(super) fn release(&mut self) {
         for ready in self.duals.take().into_iter().flat_map(|duals| duals.islands) {
             for (p, operator) in ready.island.bodies.iter().zip(ready.dual.operators()) {
-                if let Some(inverse) = &mut self.bodies[*p].inverse {
-                    inverse.operator = operator;
-                }
+                let own = &mut self.bodies[*p];
+                own.operator = operator.filter(|_| own.inverse.is_some());
             }
         }
     }
