@@ -8,7 +8,7 @@ use crate::linalg::hash::{hash, Shared};
 use crate::linalg::Symmetric;
 use crate::mesh::{Mesh, Piece};
 use crate::model::{GivenBody, Joint, Model, Part, Parts};
-use crate::platform::memory::{copied, filled, reserved, zeros};
+use crate::platform::memory::{filled, reserved, zeros};
 
 use super::components::{slight, Component, Components, Connected};
 use super::copies::Copies;
@@ -207,7 +207,8 @@ impl Split<'_> {
     }
 }
 
-/// Distributes the loads of the host to the parts: each copy gets its weight, the last copy the rest.
+/// Distributes the loads of the host to the parts: each copy gets its weight, the last copy the rest. `copies`: of the bodies that
+/// are cut.
 pub fn loads(host: &Model, parts: &Parts, copies: &[Option<Copies>], model: &mut Model) -> Result<()> {
     for (body, given) in host.bodies.iter().enumerate() {
         let Some(load) = &given.body.load else {
@@ -215,7 +216,11 @@ pub fn loads(host: &Model, parts: &Parts, copies: &[Option<Copies>], model: &mut
             continue;
         };
         let Some(copies) = &copies[body] else {
-            model.bodies[parts.first[body]].body.load = Some(copied(load, "a load")?);
+            for part in parts.of(body) {
+                let mut own = reserved(model.bodies[part].body.order, "a load")?;
+                own.extend(parts.gather(part, load));
+                model.bodies[part].body.load = Some(own);
+            }
             continue;
         };
         for part in parts.of(body) {

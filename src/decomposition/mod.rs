@@ -24,6 +24,7 @@ use rows::rows;
 pub struct Decomposition {
     /// The model that is solved. Its revisions are those of the host's model.
     pub model: Model,
+    /// For bodies that are cut.
     copies: Vec<Option<Copies>>,
     of: Revisions,
 }
@@ -47,11 +48,12 @@ impl Decomposition {
         all.joints = joints.iter().map(|joint| joint.number).collect();
         let copies =
             (0..host.bodies.len()).map(|body| Copies::of(host, &all, body).map_err(|e| e.body(body)));
-        let copies = copies.collect::<Result<Vec<_>>>()?;
+        let mut copies = copies.collect::<Result<Vec<_>>>()?;
         let mut model = Model::new();
         model.offsets.clone_from(&all.starts);
         model.bodies = bodies;
         (model.contact, model.equalities, model.friction) = rows(host, &joints, &all, &copies)?;
+        copies.iter_mut().enumerate().for_each(|(body, own)| drop(own.take_if(|_| !all.is_cut(body))));
         model.revisions = host.revisions;
         model.parts = Some(Arc::new(all));
         let mut made = Self { model, copies, of: host.revisions };
