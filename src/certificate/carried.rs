@@ -286,7 +286,7 @@ mod tests {
         RowSet {
             matrix: Arc::new(matrix),
             rhs: vec![0.0; rows.len()],
-            compliance: vec![0.0; rows.len()],
+            compliance: vec![0.0; rows.len()].into(),
             ..RowSet::default()
         }
     }

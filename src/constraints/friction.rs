@@ -221,7 +221,7 @@ impl Friction {
             return Err(Error::argument("inv_kt", what).node(first + at).entry(at).value(inv_kt[at]));
         }
         let dim = self.dim;
-        let target = &mut self.rows.compliance[first * dim..(first + inv_kt.len()) * dim];
+        let target = &mut Arc::make_mut(&mut self.rows.compliance)[first * dim..(first + inv_kt.len()) * dim];
         target.iter_mut().enumerate().for_each(|(i, c)| *c = inv_kt[i / dim]);
         Ok(())
     }

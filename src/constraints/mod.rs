@@ -47,8 +47,8 @@ pub struct RowSet {
     pub matrix: Arc<Csr>,
     /// c or h, length; +infinity for a contact row that never closes.
     pub rhs: Vec<f64>,
-    /// 1/k >= 0, length / force; 0 for a rigid row.
-    pub compliance: Vec<f64>,
+    /// 1/k >= 0, length / force; 0 for a rigid row. Saved states, parts and equal islands share it.
+    pub compliance: Arc<Vec<f64>>,
     /// Rows without entries, because these were rounding: of repeated entries that cancelled, or of the other rows of a node.
     pub cancelled: Vec<usize>,
     /// What was taken from the right-hand sides of the host as rounding, >= 0, length; none was if it is empty.
@@ -60,7 +60,7 @@ impl Default for RowSet {
         Self {
             matrix: Arc::new(Csr::empty(0)),
             rhs: Vec::new(),
-            compliance: Vec::new(),
+            compliance: Arc::default(),
             cancelled: Vec::new(),
             rounding: Vec::new(),
         }
@@ -82,9 +82,9 @@ impl RowSet {
         self.rounding.get(i).copied().unwrap_or(0.0)
     }
 
-    /// A copy that shares the entries of the rows; `what` names it in errors.
+    /// A copy that shares entries and compliances of the rows; `what` names it in errors.
     pub fn copied(&self, what: &str) -> Result<Self> {
-        let (rhs, compliance) = (copied(&self.rhs, what)?, copied(&self.compliance, what)?);
+        let (rhs, compliance) = (copied(&self.rhs, what)?, Arc::clone(&self.compliance));
         let (matrix, cancelled, rounding) =
             (Arc::clone(&self.matrix), self.cancelled.clone(), self.rounding.clone());
         Ok(Self { matrix, rhs, compliance, cancelled, rounding })
@@ -134,7 +134,7 @@ impl RowSet {
             entries.retain(|entry| entry.1.abs() > noise);
             added.push_row(entries);
         }
-        let compliance = zeros(rows, "constraint rows")?;
+        let compliance = zeros(rows, "constraint rows")?.into();
         self.append(&Self { matrix: Arc::new(added), rhs, compliance, cancelled, ..Self::default() }, offsets)
     }
 
@@ -145,7 +145,7 @@ impl RowSet {
         (0..more.len()).for_each(|i| matrix.push_row(more.matrix.row(i)));
         matrix.cols = offsets.last().copied().unwrap_or(0);
         self.rhs.extend(&more.rhs);
-        self.compliance.extend(&more.compliance);
+        Arc::make_mut(&mut self.compliance).extend(&*more.compliance);
         self.cancelled.extend(&more.cancelled);
         Ok(first)
     }
@@ -161,7 +161,8 @@ impl RowSet {
 
     /// `inv_k`: 1/k, length / force, for the rows from `first` on; 0 makes a row rigid.
     pub fn set_compliance(&mut self, first: usize, inv_k: &[f64]) -> Result<()> {
-        let target = values_from(&mut self.compliance, first, inv_k.len())?;
+        let all = Arc::make_mut(&mut self.compliance);
+        let target = values_from(all, first, inv_k.len())?;
         if let Some(at) = inv_k.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
             let what = format!("the compliance 1/k is not a finite number >= 0: {}", inv_k[at]);
             return Err(Error::argument("inv_k", what).row(first + at).entry(at).value(inv_k[at]));
@@ -325,8 +326,12 @@ mod tests {
     fn a_row_between_a_soft_and_a_stiff_body_weighs_as_the_soft_one() {
         let mut matrix = Csr::empty(2);
         matrix.push_row([(0, 1.0), (1, -1.0)]);
-        let mut rows =
-            RowSet { matrix: Arc::new(matrix), rhs: vec![0.0], compliance: vec![0.0], ..RowSet::default() };
+        let mut rows = RowSet {
+            matrix: Arc::new(matrix),
+            rhs: vec![0.0],
+            compliance: vec![0.0].into(),
+            ..RowSet::default()
+        };
         let s = row_scales(&rows, &[4.0, 4e12], 1.0);
         assert!((s[0] - 2.0).abs() < 1e-11);
         rows.set_compliance(0, &[0.75]).unwrap(); // 1/4 + 3/4 = 1, D and 1/k in the same unit
@@ -365,7 +370,7 @@ mod tests {
             );
             assert_eq!(rows.set_compliance(first, &bad).unwrap_err().kind, Kind::Argument("first"));
         }
-        assert_eq!((rows.rhs, rows.compliance), (vec![0.0; 3], vec![0.0; 3]));
+        assert_eq!((rows.rhs, rows.compliance), (vec![0.0; 3], vec![0.0; 3].into()));
     }
 
     #[test]
@@ -380,7 +385,7 @@ mod tests {
         }
         assert_eq!(rows.set_compliance(1, &[1.0, 1.0]).unwrap_err().kind, Kind::Argument("rows"));
         assert_eq!(rows.set_compliance(2, &[1.0]).unwrap_err().kind, Kind::Argument("first"));
-        assert_eq!(rows.compliance, [0.0, 0.5]);
+        assert_eq!(*rows.compliance, [0.0, 0.5]);
     }
 
     #[test]

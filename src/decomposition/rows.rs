@@ -42,7 +42,7 @@ pub fn rows(
     }
     let all = matrix.rows();
     equalities.rhs.resize(all, 0.0);
-    equalities.compliance.resize(all, 0.0);
+    Arc::make_mut(&mut equalities.compliance).resize(all, 0.0);
     let mut friction = host.friction.copied(WHAT)?;
     friction.rows = moved(&host.friction.rows, parts, place)?;
     Ok((contact, equalities, friction))

@@ -8,7 +8,7 @@ use crate::certificate::{Certificate, Entry};
 use crate::constraints::{Friction, FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::graph::joined;
-use crate::linalg::hash::{hash, Shared, START};
+use crate::linalg::hash::{hash, same_bits, Shared, START};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
 use crate::model::{Lengths, Model};
@@ -237,7 +237,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         island.bodies = bodies.into();
     }
     let place = |j: usize| start[body_of(j)] + j - offsets[body_of(j)];
-    let mut known = Shared::default();
+    let mut known = Default::default();
     for kind in [RowKind::Inequality, RowKind::Equality] {
         let rows = model.rows(kind);
         let finite = (0..rows.len()).filter(|&i| rows.is_finite(i));
@@ -310,19 +310,19 @@ fn nodes(
     for island in islands.iter_mut().filter(|island| !island.friction.numbers.is_empty()) {
         let unknowns = island.unknowns();
         let Members { numbers, rows } = &mut Arc::make_mut(&mut island.friction).tangential;
-        *rows = restricted(&all.rows, numbers, unknowns, place, &mut Shared::default())?;
+        *rows = restricted(&all.rows, numbers, unknowns, place, &mut Default::default())?;
     }
     Ok(())
 }
 
-/// These rows over the unknowns of an island, which shares their entries with the host's rows if it has all of them, otherwise with
-/// other islands that have equal ones.
+/// These rows over the unknowns of an island, which shares their entries with the host's rows if it has all of them, otherwise, as
+/// their compliances, with other islands that have equal ones.
 fn restricted(
     rows: &RowSet,
     numbers: &[usize],
     unknowns: usize,
     place: impl Fn(usize) -> usize,
-    known: &mut Shared<Csr>,
+    (known, compliances): &mut (Shared<Csr>, Shared<Vec<f64>>),
 ) -> Result<RowSet> {
     let pick = |values: &[f64]| -> Vec<f64> { numbers.iter().map(|&i| values[i]).collect() };
     let matrix = if numbers.len() == rows.len() && rows.matrix.cols == unknowns {
@@ -334,6 +334,8 @@ fn restricted(
         known.share(own.key(), own, Csr::eq)
     };
     let (rhs, compliance) = (copied(&pick(&rows.rhs), WHAT)?, pick(&rows.compliance));
+    let key = hash(START, compliance.iter().map(|c| c.to_bits()));
+    let compliance = compliances.share(key, compliance, |a, b| same_bits(a, b));
     Ok(RowSet { matrix, rhs, compliance, ..RowSet::default() })
 }
 

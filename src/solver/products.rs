@@ -96,7 +96,7 @@ impl Problem {
         self.check_rows(y.len())?;
         self.check_nothing_cut()?;
         self.setup()?;
-        let compliance = self.model.contact.compliance.iter().chain(&self.model.equalities.compliance);
+        let compliance = self.model.contact.compliance.iter().chain(&*self.model.equalities.compliance);
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
         let contact = self.model.contact.len();
         for ready in &self.prepared.done(&self.model)?.islands {

@@ -170,7 +170,7 @@ impl DenseModel {
         RowSet {
             matrix: matrix.into(),
             rhs: rows.iter().map(|row| row.1).collect(),
-            compliance: rows.iter().map(|row| row.2).collect(),
+            compliance: rows.iter().map(|row| row.2).collect::<Vec<_>>().into(),
             ..RowSet::default()
         }
     }

@@ -85,7 +85,7 @@ fn laws_compliances_and_slips_are_those_of_the_nodes_named() {
     assert_eq!(friction.set_reference(0, 2, 2, &[1.0; 4]).unwrap_err().kind, Kind::Argument("dim"));
     assert_eq!(friction.set_compliance(2, &[1.0]).unwrap_err().kind, Kind::Argument("first"));
     assert_eq!(friction.set_compliance(1, &[1.0; 2]).unwrap_err().kind, Kind::Argument("nodes"));
-    assert_eq!((friction.rows.rhs, friction.rows.compliance), (vec![1.0, 2.0], vec![0.0, 0.125]));
+    assert_eq!((friction.rows.rhs, friction.rows.compliance), (vec![1.0, 2.0], vec![0.0, 0.125].into()));
     let bounds: Vec<_> = friction.nodes.iter().map(|node| (node.coefficient, node.bound)).collect();
     assert_eq!(bounds, [(0.25, 0.0), (0.0, 3.0)]);
 }

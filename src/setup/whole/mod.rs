@@ -202,7 +202,7 @@ fn members(
         matrix.push_row(entries);
     }
     let rhs = copied(&cut.rows.rhs[..numbers.len()], WHAT)?;
-    let compliance = copied(&cut.rows.compliance[..numbers.len()], WHAT)?;
+    let compliance = copied(&cut.rows.compliance[..numbers.len()], WHAT)?.into();
     let rounding = (0..numbers.len()).map(|i| cut.rows.rounding(i)).collect();
     let rows = RowSet { matrix: Arc::new(matrix), rhs, compliance, rounding, ..RowSet::default() };
     Ok(Members { rows, numbers })

@@ -37,7 +37,7 @@ fn nodes_with_friction_come_back_bit_by_bit() {
     assert_eq!((new.dim, &new.nodes), (old.dim, &old.nodes));
     let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
     assert_eq!((&new.rows.matrix, bits(&new.rows.rhs)), (&old.rows.matrix, bits(&old.rows.rhs)));
-    assert_eq!(new.rows.compliance, [0.0, 0.0, 0.125, 0.125]);
+    assert_eq!(*new.rows.compliance, [0.0, 0.0, 0.125, 0.125]);
     assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
     for length in 0..bytes.len() {
         refused(&bytes[..length]);
