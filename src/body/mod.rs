@@ -74,9 +74,9 @@ pub struct Body {
     /// The meaning of the rigid motions of the coordinates.
     pub coordinate_modes: Modes,
     /// Dofs held in `K_p+`; chosen by the library if not given.
-    pub fixing: Option<Vec<usize>>,
+    pub fixing: Option<Box<[usize]>>,
     /// `f_p`, length n, force; zero until given.
-    pub load: Option<Vec<f64>>,
+    pub load: Option<Box<[f64]>>,
 }
 
 impl Body {

@@ -219,12 +219,12 @@ pub fn loads(host: &Model, parts: &Parts, copies: &[Option<Copies>], model: &mut
             for part in parts.of(body) {
                 let mut own = reserved(model.bodies[part].body.order, "a load")?;
                 own.extend(parts.gather(part, load));
-                model.bodies[part].body.load = Some(own);
+                model.bodies[part].body.load = Some(own.into());
             }
             continue;
         };
         for part in parts.of(body) {
-            model.bodies[part].body.load = Some(zeros(model.bodies[part].body.order, "a load")?);
+            model.bodies[part].body.load = Some(zeros(model.bodies[part].body.order, "a load")?.into());
         }
         for (dof, &force) in load.iter().enumerate().filter(|(_, force)| **force != 0.0) {
             let (mut left, mut all) = (force, copies.all(dof).peekable());

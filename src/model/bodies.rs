@@ -87,7 +87,7 @@ impl Model {
         }
         let unchanged = self.given(body)?.body.fixing.as_deref() == dofs;
         let given = self.change(body, Change::unless(unchanged, Change::Fixing))?;
-        given.body.fixing = dofs.map(<[usize]>::to_vec);
+        given.body.fixing = dofs.map(Box::from);
         Ok(())
     }
 
@@ -128,7 +128,7 @@ impl Model {
         if let Some(dof) = first_non_finite(f) {
             return Err(Error::argument("f", "the entry is not a finite number").body(body).entry(dof));
         }
-        self.bodies[body].body.load = Some(copied(f, "a load")?);
+        self.bodies[body].body.load = Some(copied(f, "a load")?.into());
         Ok(())
     }
 

@@ -74,7 +74,7 @@ pub struct GivenBody {
     /// The host has overwritten borrowed values, and they were refused: there is no valid matrix.
     pub spoiled: bool,
     /// The host's numbers of its unknowns.
-    pub numbers: Option<Vec<usize>>,
+    pub numbers: Option<Box<[usize]>>,
     pub revisions: BodyRevisions,
 }
 

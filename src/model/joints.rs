@@ -20,8 +20,8 @@ pub struct Joint {
 impl Model {
     /// For every number one joint fewer than unknowns that have it: each joins the unknown to that of the previous body.
     pub fn joints(&self) -> Result<Vec<Joint>> {
-        let numbered = self.bodies.iter().filter_map(|given| given.numbers.as_ref());
-        let count = numbered.map(Vec::len).sum::<usize>() - self.unknowns.len();
+        let numbered = self.bodies.iter().filter_map(|given| given.numbers.as_deref());
+        let count = numbered.map(<[usize]>::len).sum::<usize>() - self.unknowns.len();
         let (mut joints, mut last) = (reserved(count, WHAT)?, HashMap::new());
         let bytes = count * size_of::<(usize, usize)>();
         last.try_reserve(count).map_err(|_| refusal(bytes, WHAT))?;

@@ -44,7 +44,7 @@ impl Model {
     pub fn set_numbering(&mut self, body: usize, numbers: &[i64]) -> Result<()> {
         self.check_length(body, "n", numbers.len())?;
         let numbers = self.checked_numbers(body, numbers)?;
-        if self.bodies[body].numbers.as_ref() == Some(&numbers) {
+        if self.bodies[body].numbers.as_deref() == Some(&numbers) {
             return Ok(());
         }
         let (was_shared, unknowns) = (self.shares_numbers(), &mut self.unknowns);
@@ -55,7 +55,7 @@ impl Model {
                 unknowns.remove(old);
             }
         }
-        self.bodies[body].numbers = Some(numbers);
+        self.bodies[body].numbers = Some(numbers.into());
         // a number that the body no longer uses may belong to other bodies
         let claiming = if was_shared { 0..self.bodies.len() } else { body..body + 1 };
         for p in claiming {
@@ -73,8 +73,8 @@ impl Model {
 
     /// Whether unknowns of several bodies share a number.
     pub fn shares_numbers(&self) -> bool {
-        let all = self.bodies.iter().filter_map(|given| given.numbers.as_ref());
-        all.map(Vec::len).sum::<usize>() > self.unknowns.len()
+        let all = self.bodies.iter().filter_map(|given| given.numbers.as_deref());
+        all.map(<[usize]>::len).sum::<usize>() > self.unknowns.len()
     }
 
     /// Whether the bodies have numbers: either all or none must have.
@@ -155,7 +155,7 @@ impl Model {
                 return Err(error.body(body).dof(dof).entry(entry));
             }
         }
-        self.bodies.iter_mut().zip(loads).for_each(|(given, load)| given.body.load = Some(load));
+        self.bodies.iter_mut().zip(loads).for_each(|(given, load)| given.body.load = Some(load.into()));
         Ok(())
     }
 

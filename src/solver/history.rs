@@ -37,7 +37,7 @@ pub struct State {
     /// Revision of the matrices.
     pub bodies: u64,
     /// Loads of the bodies that have one.
-    pub loads: Vec<Option<Vec<f64>>>,
+    pub loads: Vec<Option<Box<[f64]>>>,
     /// Contact and equality rows, with c, h and 1/k.
     pub rows: [RowSet; 2],
     /// Nodes with friction: their laws, tangential rows, s_old and compliances.

@@ -25,7 +25,7 @@ impl Problem {
 
     /// Keeps loads, rows, friction, multipliers and active set under a number that is never used again.
     pub fn save_state(&mut self) -> Result<usize> {
-        let loads = self.model.bodies.iter().map(|given| copy_of(given.body.load.as_ref()));
+        let loads = self.model.bodies.iter().map(|given| copy_of(given.body.load.as_deref()));
         let state = State {
             bodies: self.model.revisions.bodies,
             loads: loads.collect::<Result<_>>()?,
@@ -49,7 +49,7 @@ impl Problem {
             let what = "bodies were added since the state was saved: it no longer fits";
             return Err(Error::new(Kind::State, what));
         }
-        let loads = state.loads.iter().map(|load| copy_of(load.as_ref())).collect::<Result<Vec<_>>>()?;
+        let loads = state.loads.iter().map(|load| copy_of(load.as_deref())).collect::<Result<Vec<_>>>()?;
         let [contact, equalities] = [state.rows[0].copied(WHAT)?, state.rows[1].copied(WHAT)?];
         let friction = state.friction.copied(WHAT)?;
         let same = model.contact.same_but_rhs(&contact)
@@ -76,8 +76,8 @@ impl Problem {
 
 const WHAT: &str = "a saved state";
 
-fn copy_of(load: Option<&Vec<f64>>) -> Result<Option<Vec<f64>>> {
-    load.map(|f| copied(f, WHAT)).transpose()
+fn copy_of(load: Option<&[f64]>) -> Result<Option<Box<[f64]>>> {
+    load.map(|f| Ok(copied(f, WHAT)?.into())).transpose()
 }
 
 fn no_state(number: usize) -> Error {

@@ -86,7 +86,7 @@ fn all_that_is_registered_comes_back_bit_by_bit() {
         let (new, old) = (&new.body, &old.body);
         assert_eq!((new.order, &new.stiffness, &new.fixing), (old.order, &old.stiffness, &old.fixing));
         let bits =
-            |f: &Option<Vec<f64>>| f.as_ref().map(|f| f.iter().map(|v| v.to_bits()).collect::<Vec<_>>());
+            |f: &Option<Box<[f64]>>| f.as_ref().map(|f| f.iter().map(|v| v.to_bits()).collect::<Vec<_>>());
         assert_eq!(bits(&new.load), bits(&old.load));
         let basis = |body: &crate::body::Body| {
             body.null_space.as_ref().map(|r| (r.modes, r.vectors.cols, r.vectors.data.clone()))
