@@ -281,7 +281,7 @@ fn drop_noise(rows: &mut RowSet, normal: &[Option<usize>], contact: &RowSet) {
         kept.push_row(rows.matrix.row(i).filter(|_| dropped.binary_search(&i).is_err()));
     }
     rows.matrix = Arc::new(kept);
-    rows.cancelled.extend(dropped);
+    rows.taken.get_or_insert_default().entries.extend(dropped);
 }
 
 /// The error of a tangential row among the nodes to be added.

@@ -11,11 +11,13 @@ mod entries;
 mod friction;
 mod grouping;
 mod kind;
+mod taken;
 
 pub use decoupling::{Decoupling, UnitRows};
 pub use friction::{Friction, FrictionInput, FrictionNode};
 pub use grouping::Grouping;
 pub use kind::RowKind;
+pub use taken::Taken;
 
 use std::sync::Arc;
 
@@ -49,21 +51,13 @@ pub struct RowSet {
     pub rhs: Vec<f64>,
     /// 1/k >= 0, length / force; 0 for a rigid row. Saved states, parts and equal islands share it.
     pub compliance: Arc<Vec<f64>>,
-    /// Rows without entries, because these were rounding: of repeated entries that cancelled, or of the other rows of a node.
-    pub cancelled: Vec<usize>,
-    /// What was taken from the right-hand sides of the host as rounding, >= 0, length; none was if it is empty.
-    pub rounding: Vec<f64>,
+    /// What was taken from the host's rows as rounding; none if nothing was, as in nearly all of very many sets.
+    pub taken: Option<Box<Taken>>,
 }
 
 impl Default for RowSet {
     fn default() -> Self {
-        Self {
-            matrix: Arc::new(Csr::empty(0)),
-            rhs: Vec::new(),
-            compliance: Arc::default(),
-            cancelled: Vec::new(),
-            rounding: Vec::new(),
-        }
+        Self { matrix: Arc::new(Csr::empty(0)), rhs: Vec::new(), compliance: Arc::default(), taken: None }
     }
 }
 
@@ -77,17 +71,10 @@ impl RowSet {
         self.matrix.row(i).map(|(j, v)| v * v / metric[j]).sum::<f64>() + unit * self.compliance[i]
     }
 
-    /// What was taken from the right-hand side of row i as rounding, length.
-    pub fn rounding(&self, i: usize) -> f64 {
-        self.rounding.get(i).copied().unwrap_or(0.0)
-    }
-
     /// A copy that shares entries and compliances of the rows; `what` names it in errors.
     pub fn copied(&self, what: &str) -> Result<Self> {
         let (rhs, compliance) = (copied(&self.rhs, what)?, Arc::clone(&self.compliance));
-        let (matrix, cancelled, rounding) =
-            (Arc::clone(&self.matrix), self.cancelled.clone(), self.rounding.clone());
-        Ok(Self { matrix, rhs, compliance, cancelled, rounding })
+        Ok(Self { matrix: Arc::clone(&self.matrix), rhs, compliance, taken: self.taken.clone() })
     }
 
     /// Entries and compliances equal those of the other, and the same rows may close.
@@ -115,7 +102,7 @@ impl RowSet {
             None => zeros(rows, "constraint rows")?,
         };
         check_rhs(kind, &rhs, 0)?;
-        let (mut added, mut cancelled) = (Csr::empty(0), Vec::new());
+        let (mut added, mut taken) = (Csr::empty(0), None::<Box<Taken>>);
         for i in 0..rows {
             let mut entries = Vec::with_capacity(input.ptr[i + 1] - input.ptr[i]);
             for at in input.ptr[i]..input.ptr[i + 1] {
@@ -129,13 +116,13 @@ impl RowSet {
             if entries.iter().any(|entry| entry.1 != 0.0)
                 && entries.iter().all(|entry| entry.1.abs() <= noise)
             {
-                cancelled.push(self.len() + i);
+                taken.get_or_insert_default().entries.push(self.len() + i);
             }
             entries.retain(|entry| entry.1.abs() > noise);
             added.push_row(entries);
         }
         let compliance = zeros(rows, "constraint rows")?.into();
-        self.append(&Self { matrix: Arc::new(added), rhs, compliance, cancelled, ..Self::default() }, offsets)
+        self.append(&Self { matrix: Arc::new(added), rhs, compliance, taken }, offsets)
     }
 
     /// Appends rows over the same unknowns; returns the number of the first.
@@ -146,7 +133,9 @@ impl RowSet {
         matrix.cols = offsets.last().copied().unwrap_or(0);
         self.rhs.extend(&more.rhs);
         Arc::make_mut(&mut self.compliance).extend(&*more.compliance);
-        self.cancelled.extend(&more.cancelled);
+        if !more.cancelled().is_empty() {
+            self.taken.get_or_insert_default().entries.extend(more.cancelled());
+        }
         Ok(first)
     }
 

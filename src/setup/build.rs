@@ -101,7 +101,7 @@ impl Prepared {
             whole.island.refresh(lengths);
             let (level, own) = (&ready.island.contact.rows, &mut whole.island.contact.rows);
             own.rhs.clone_from(&level.rhs);
-            own.rounding.clone_from(&level.rounding);
+            own.taken.clone_from(&level.taken);
         }
     }
 

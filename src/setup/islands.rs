@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::certificate::{Certificate, Entry};
-use crate::constraints::{Friction, FrictionNode, RowKind, RowSet};
+use crate::constraints::{Friction, FrictionNode, RowKind, RowSet, Taken};
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::hash::{hash, same_bits, Shared, START};
@@ -167,7 +167,7 @@ impl Island {
                 *taken = if *c == rows.rhs[i] { 0.0 } else { rows.rhs[i].abs() };
             }
             let is_taken = rounding.iter().any(|taken| *taken != 0.0);
-            own.rounding = Some(rounding).filter(|_| is_taken).unwrap_or_default();
+            own.taken = is_taken.then(|| Box::new(Taken { rhs: rounding, ..Taken::default() }));
         }
         let nodes = friction.into_iter().flat_map(|of| of.nodes.iter_mut().zip(&of.numbers));
         for (own, &number) in nodes {

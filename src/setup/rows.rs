@@ -132,8 +132,9 @@ impl DualRows {
             let slack = || lengths.rounding(RowKind::Inequality, numbers[i]).max(NOISE * given.abs());
             if scale[i] * given != tightest[group] && given - level <= slack() {
                 rows.rhs[i] = level;
-                rows.rounding.resize(rows.rhs.len(), 0.0);
-                rows.rounding[i] += (given - level).abs();
+                let taken = &mut rows.taken.get_or_insert_default().rhs;
+                taken.resize(numbers.len(), 0.0);
+                taken[i] += (given - level).abs();
             }
         }
     }

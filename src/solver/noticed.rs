@@ -140,8 +140,8 @@ fn unusual(log: &Log, model: &Model) -> Result<()> {
             .filter(|&i| !rows.is_empty_row(i) && rows.largest_entry(i) < SHORT * others(i))
             .collect();
         for (some, what) in [
-            (&rows.cancelled, "the entries cancel up to rounding, or are rounding of the rows of their node: the row constrains nothing"),
-            (&short, "its entries are below 1e-12 of those of all other rows on its bodies"),
+            (rows.cancelled(), "the entries cancel up to rounding, or are rounding of the rows of their node: the row constrains nothing"),
+            (&short[..], "its entries are below 1e-12 of those of all other rows on its bodies"),
         ] {
             let Some(first) = some.first() else { continue };
             let (count, number) = (some.len(), *first as i64 + model.settings.index_base);

@@ -203,8 +203,7 @@ fn members(
     }
     let rhs = copied(&cut.rows.rhs[..numbers.len()], WHAT)?;
     let compliance = copied(&cut.rows.compliance[..numbers.len()], WHAT)?.into();
-    let rounding = (0..numbers.len()).map(|i| cut.rows.rounding(i)).collect();
-    let rows = RowSet { matrix: Arc::new(matrix), rhs, compliance, rounding, ..RowSet::default() };
+    let rows = RowSet { matrix: Arc::new(matrix), rhs, compliance, taken: cut.rows.taken.clone() };
     Ok(Members { rows, numbers })
 }
 
