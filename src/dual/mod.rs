@@ -103,7 +103,8 @@ pub struct Draft {
 impl Draft {
     /// `matrix` is B, m x n.
     pub fn new(parts: Vec<BodyShare>, matrix: &Arc<Csr>) -> Self {
-        let local = cut(parts.iter().map(|part| part.range.clone()).collect(), matrix);
+        let ranges: Vec<_> = parts.iter().map(|part| part.range.clone()).collect();
+        let local = cut(&ranges, matrix);
         let (mut subdomains, mut distinct) =
             (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
         let mut first = 0;
@@ -175,11 +176,7 @@ impl Dual {
 
     /// Numbers of distinct rows of B over each of these ranges of all unknowns, ascending; rows that are multiples of each other
     /// count once. Row `tangential` is the first tangential row.
-    pub fn distinct_rows(
-        ranges: Vec<Range<usize>>,
-        matrix: &Arc<Csr>,
-        tangential: usize,
-    ) -> Vec<DistinctRows> {
+    pub fn distinct_rows(ranges: &[Range<usize>], matrix: &Arc<Csr>, tangential: usize) -> Vec<DistinctRows> {
         let count = |(rows, local): &(Vec<usize>, Arc<Csr>)| {
             let multiples = Multiples::of(local).0;
             let others = rows.partition_point(|row| *row < tangential);
@@ -326,7 +323,7 @@ pub type InParallel<'a, T> = dyn Fn(usize, &(dyn Fn(usize) -> Result<T> + Sync))
 
 /// For bodies with these ranges, which cover all unknowns in ascending order: the rows of B that touch the body, and
 /// their entries over its unknowns; a body that all rows touch alone shares B.
-fn cut(ranges: Vec<Range<usize>>, matrix: &Arc<Csr>) -> Vec<(Vec<usize>, Arc<Csr>)> {
+fn cut(ranges: &[Range<usize>], matrix: &Arc<Csr>) -> Vec<(Vec<usize>, Arc<Csr>)> {
     if ranges.len() == 1 && matrix.ptr.windows(2).all(|ends| ends[0] < ends[1]) {
         return vec![((0..matrix.rows()).collect(), Arc::clone(matrix))];
     }
@@ -366,6 +363,6 @@ mod tests {
             of(&[2], 1, &[&[(0, 0.0)]]),
             of(&[0, 3], 1, &[&[(0, 4.0)], &[(0, 7.0)]]),
         ];
-        assert_eq!(cut(vec![0..2, 2..5, 5..6, 6..7], &Arc::new(matrix)), expected);
+        assert_eq!(cut(&[0..2, 2..5, 5..6, 6..7], &Arc::new(matrix)), expected);
     }
 }

@@ -62,7 +62,7 @@ impl Prepared {
             let (mut own, compliance) = DualRows::of(&island, values, coupled(&model.settings))?;
             own.uneven |= !carried.is_empty();
             own.level_gaps(&mut island, &lengths);
-            let counts = Dual::distinct_rows(island.ranges.to_vec(), &own.matrix, own.first_tangential());
+            let counts = Dual::distinct_rows(&island.ranges, &own.matrix, own.first_tangential());
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
             with_rows.push((Box::new(island), known.share(own.key(), own, DualRows::eq), compliance));
         }
@@ -151,7 +151,7 @@ impl Prepared {
             let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
             let of_part = |part: usize| inverse(part).map(|of| (&of.kplus, &of.grounded));
             let whole = Whole::of(model, &island, &of_part)?;
-            let pairs = (!island.friction.numbers.is_empty()).then(Box::default);
+            let pairs = (!island.friction.is_empty()).then(Box::default);
             ready.push(Ready {
                 island,
                 dual,

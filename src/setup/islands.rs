@@ -152,7 +152,7 @@ impl Island {
     /// Takes over the right-hand sides of the host, without those that are rounding, and its laws of friction.
     pub fn refresh(&mut self, lengths: &Lengths) {
         let model = lengths.model();
-        let mut friction = Some(&mut self.friction).filter(|of| !of.numbers.is_empty()).map(Arc::make_mut);
+        let mut friction = Some(&mut self.friction).filter(|of| !of.is_empty()).map(Arc::make_mut);
         let tangential = friction.as_mut().map(|of| (&mut of.tangential, RowKind::Tangential));
         let equalities = Some(&mut self.equalities).filter(|of| !of.numbers.is_empty());
         let equalities = equalities.map(|of| (Arc::make_mut(of), RowKind::Equality));
@@ -182,6 +182,12 @@ fn law(model: &Model, number: usize) -> (f64, f64) {
     let FrictionNode { normal, coefficient, bound, .. } = model.friction.nodes[number];
     let alone = normal.map_or(0.0, |row| model.contact.force_without_entries(RowKind::Inequality, row));
     (coefficient, bound + coefficient * alone)
+}
+
+impl Nodes {
+    pub fn is_empty(&self) -> bool {
+        self.numbers.is_empty()
+    }
 }
 
 impl Members {
@@ -307,7 +313,7 @@ fn nodes(
         own.numbers.push(number);
         own.nodes.push(FrictionNode { normal, first, count, coefficient, bound });
     }
-    for island in islands.iter_mut().filter(|island| !island.friction.numbers.is_empty()) {
+    for island in islands.iter_mut().filter(|island| !island.friction.is_empty()) {
         let unknowns = island.unknowns();
         let Members { numbers, rows } = &mut Arc::make_mut(&mut island.friction).tangential;
         *rows = restricted(&all.rows, numbers, unknowns, place, &mut Default::default())?;
