@@ -150,10 +150,11 @@ impl<'a> Run<'a, '_> {
     /// The answer: exact zeros, forces exactly within the cones, gaps from a separate product.
     fn finished(&mut self, now: &Point) -> Result<Point> {
         let mut y = now.x.clone();
-        // open nodes, by their gaps: finally exactly 0
+        // open nodes, by their gaps, and forces that are rounding: finally exactly 0, unless balance needs them
+        let none = RHO * self.small;
         for row in self.problem.cones.nodes().iter().filter_map(|node| node.normal) {
             let trial = now.x[row] - RHO * now.r[row];
-            y[row] = if trial <= 0.0 { trial.min(y[row]) } else { y[row] };
+            y[row] = if trial <= none { trial.min(y[row]) - none } else { y[row] };
         }
         let inside = self.projected(&y)?;
         let x = if inside.met { inside.point } else { now.x.clone() };
