@@ -30,7 +30,7 @@ rungs! {
     PullAll: "all pulling", "P9: all rows with a negative multiplier leave at once, before P10";
     Reference: "last motions", "P10: free motions of the last gradient projection";
     Faces: "faces", "S10: faces by the data of the host where the iteration gives up, or costs as much";
-    SparseFaces: "sparse faces", "S13: sparse factors where dense ones confirm a face without an answer that passes";
+    SparseFaces: "sparse faces", "S13: sparse factors where dense ones lose the digits of an answer";
     Interior: "interior point", "S13.6: faces from an interior point";
     AllRows: "all rows", "S13: the face with rows that nearly depend on others";
     Again: "again", "S10: the iteration again from an interior point";

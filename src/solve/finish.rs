@@ -140,7 +140,8 @@ impl<'a, 'b> Finish<'a, 'b> {
     }
 
     /// Up to `most` active sets one after the other, on up to `dense` rows and modes by dense factors, until one confirms itself. If its
-    /// answer does not pass, sparse factors take the place of dense ones from the beginning on, since the point may have lost its digits.
+    /// answer does not pass, or an answer whose forces all press misses equations that hold on every set, the point may have lost its
+    /// digits: sparse factors take the place of dense ones from the beginning on.
     fn follow(
         &mut self,
         mut active: Vec<bool>,
@@ -154,15 +155,18 @@ impl<'a, 'b> Finish<'a, 'b> {
             let Some(undetermined) = self.on_face(&mut point, &active, dense)? else { break };
             self.ending.solution.counts.direct += 1;
             let next = point.active(self.recovery);
-            self.keep(&point, undetermined, if next == active { is_no_worse } else { is_better })?;
+            let misses =
+                self.keep(&point, undetermined, if next == active { is_no_worse } else { is_better })?;
             self.done.settled = next == active || self.ending.judgement.certificate.worst() <= ROUNDING;
             if self.done.settled && next != active && !self.delicate {
                 break;
             }
-            if next != active {
-                active = sets.after(&active, next);
-            } else if let Some(start) = start.take_if(|_| !self.passes() && Rung::SparseFaces.is_tried()) {
+            let presses = active.iter().zip(&next).all(|(at_bound, leaves)| *at_bound || !leaves);
+            let is_lost = if next == active { !self.passes() } else { misses && presses };
+            if let Some(start) = start.take_if(|_| is_lost && Rung::SparseFaces.is_tried()) {
                 (dense, point, sets) = (0, start, Pivots::default());
+            } else if next != active {
+                active = sets.after(&active, next);
             } else {
                 break;
             }
@@ -227,15 +231,18 @@ impl<'a, 'b> Finish<'a, 'b> {
         Ok(())
     }
 
+    /// Takes the answer of a point if it `replaces` the present one. Whether it misses equilibrium or equality rows, which every face has.
     fn keep(
         &mut self,
         point: &SplitPoint,
         undetermined: usize,
         replaces: fn(&Certificate, &Certificate) -> bool,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let x = point.forces(&self.recovery.scaled.gaps.bounded);
         let recovered = self.recovery.with_forces(point.displacement(), &x.parts());
         let judgement = self.recovery.judged(&recovered)?;
+        let Certificate { equilibrium, balance, equality, .. } = &judgement.certificate;
+        let misses = [equilibrium, balance, equality].iter().any(|entry| entry.ratio > 1.0);
         if replaces(&judgement.certificate, &self.ending.judgement.certificate) {
             let solution = &mut self.ending.solution;
             (solution.x, solution.alpha) = (x.values(), point.alpha.clone());
@@ -244,7 +251,7 @@ impl<'a, 'b> Finish<'a, 'b> {
             self.ending.deformed = point.deformed(self.recovery);
             self.done.replaced = true;
         }
-        Ok(())
+        Ok(misses)
     }
 }
 
