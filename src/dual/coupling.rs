@@ -6,10 +6,9 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::graph::components;
-use crate::linalg::semidefinite::sparse::{dense_inverse, uncouple};
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::NOISE;
-use crate::linalg::{Analysis, Cholesky, Csr, SpdSolver, Symmetric};
+use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
 use crate::platform::memory::{copied, headroom};
 
 /// A pivot below this means that the rows of its block may be linearly dependent.
@@ -170,6 +169,32 @@ impl FaceCoupling {
         let at = self.dense.binary_search_by_key(&rows[0], |block| block.rows[0]).ok()?;
         self.dense.get(at).filter(|block| block.rows == rows)
     }
+}
+
+/// Replaces the rows and columns in `apart` by those of the unit matrix.
+fn uncouple(w: &mut Symmetric, apart: impl Fn(usize) -> bool) {
+    for i in 0..w.order() {
+        for at in w.ptr[i]..w.ptr[i + 1] {
+            let j = w.col[at] as usize;
+            if apart(i) || apart(j) {
+                w.val[at] = f64::from(u8::from(i == j));
+            }
+        }
+    }
+}
+
+/// Inverse of the block of some rows and columns, ascending; the diagonal of W is about 1.
+fn dense_inverse(w: &Symmetric, rows: &[usize]) -> Result<SpdSolver> {
+    let mut block = Matrix::zeros(rows.len(), rows.len())?;
+    for (a, &i) in rows.iter().enumerate() {
+        for (j, v) in w.lower_row(i) {
+            if let Ok(b) = rows.binary_search(&j) {
+                block.set(a, b, v);
+                block.set(b, a, v);
+            }
+        }
+    }
+    SpdSolver::new(&block, &vec![1.0; rows.len()])
 }
 
 /// The rows with an off-diagonal entry of W above rounding, and W restricted to these rows, without smaller entries.

@@ -3,6 +3,7 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use crate::linalg::semidefinite::clusters::Blocks;
 use crate::linalg::Csr;
 use crate::qp::conjugate::Conjugate;
 use crate::qp::space::Space;
@@ -21,8 +22,9 @@ impl BetweenSolves {
         locked(&self.space).take_if(fits).map(|space| *space)
     }
 
-    /// Without modes there is nothing to keep.
-    pub fn keep(&self, space: Space) {
+    /// Without modes there is nothing to keep. The next solve does not know the faces of this one, so it has the same bits.
+    pub fn keep(&self, mut space: Space) {
+        space.by_blocks.iter_mut().for_each(Blocks::forget_face);
         *locked(&self.space) = space.factors.is_some().then(|| Box::new(space));
     }
 

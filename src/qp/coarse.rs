@@ -19,8 +19,6 @@ pub struct Coarse<'a> {
     space: Space,
     /// Receives the space when this is dropped.
     kept: Option<&'a BetweenSolves>,
-    /// The last face solved by blocks had free motions: the next face is likely to have some.
-    left_free: bool,
     /// The face of all rows, and the last other face.
     faces: [Option<CoarseFace>; 2],
     pub solves: usize,
@@ -51,7 +49,6 @@ impl<'a> Coarse<'a> {
             rounding,
             space,
             kept: None,
-            left_free: false,
             faces: [None, None],
             solves: 0,
             factorisations: 0,
@@ -82,7 +79,8 @@ impl<'a> Coarse<'a> {
             interrupt::check()?;
             tally::costly();
             self.faces[selected] = None;
-            self.faces[selected] = Some(CoarseFace { held: held.to_vec(), inverse: self.inverse(held)? });
+            let inverse = self.space.inverse(self.g_transposed, self.blocks, held, self.rounding)?;
+            self.faces[selected] = Some(CoarseFace { held: held.to_vec(), inverse });
             self.factorisations += 1;
         }
         let inverse = self.faces[selected].as_ref().map_or(&CoarseInverse::NOTHING, |face| &face.inverse);
@@ -97,17 +95,6 @@ impl<'a> Coarse<'a> {
         let rho = rho / (self.space.unit * self.space.unit);
         let held = |whole: f64| rho + if whole > 0.0 { HELD * whole } else { 1.0 };
         self.space.weighted(self.g_transposed, |i| weights[i], held)
-    }
-
-    fn inverse(&mut self, held: &[bool]) -> Result<CoarseInverse> {
-        if !self.left_free {
-            if let Some(inverse) = self.space.inverse(self.g_transposed, held, self.rounding)? {
-                return Ok(inverse);
-            }
-        }
-        let inverse = self.space.inverse_by_blocks(self.g_transposed, self.blocks, held, self.rounding)?;
-        self.left_free = inverse.deficiency() > 0;
-        Ok(inverse)
     }
 
     /// `alpha = argmin |v_F - G_F'alpha|` of minimum norm, and the remainder of v on F, 0 on the rows that are held.

@@ -22,7 +22,6 @@ rungs! {
     Start: "first face", "S6.1: a warm start's own face is tried first";
     ProjectionInside: "projection inside", "J3: an interior point method after short steps of a projection";
     Fit: "fitted again", "S8: the least-squares multiplier is refined";
-    SparseInverse: "sparse inverse", "S8: free motions by the sparse factor before dense parts";
     Plateau: "plateau", "P1: the answer is judged where the residual stays";
     TightenBy: "tightened by", "P1.3: the target by the violation reported";
     Tighten: "tightened", "P1.4: a tenth of the target";

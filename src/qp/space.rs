@@ -4,14 +4,12 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::semidefinite::clusters::Blocks;
+use crate::linalg::semidefinite::clusters::{Blocks, ClusterInverse};
 use crate::linalg::semidefinite::faces::FaceFactors;
-use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, WEAK};
-use crate::linalg::semidefinite::{is_regular_factor, GeneralInverse};
+use crate::linalg::semidefinite::{is_regular, WEAK};
 use crate::linalg::vector::{norm_max, power_of_two_below};
 use crate::linalg::{Cholesky, Csr, Matrix, Runs};
 use crate::platform::{interrupt, tally};
-use crate::qp::Rung;
 
 /// Depends on G and on which rows faces may hold, not on loads and gaps.
 #[derive(Default)]
@@ -42,7 +40,7 @@ enum Solver {
     Nothing,
     Cholesky(Arc<Cholesky>),
     /// Solution of minimum norm.
-    Singular(Box<dyn GeneralInverse>),
+    Singular(Box<ClusterInverse>),
 }
 
 impl Space {
@@ -66,42 +64,31 @@ impl Space {
         self.unit * self.unit * norm_max(&self.whole)
     }
 
-    /// `W^-1` of the rows that are not held, or W+ if some motions are free or resisted weakly; none if these are not in small parts.
-    /// `rows`: G', or other rows with its pattern.
-    pub fn inverse(&mut self, rows: &Csr, held: &[bool], rounding: f64) -> Result<Option<CoarseInverse>> {
-        let &mut Self { unit, ref whole, ref mut factors, .. } = self;
-        let Some(factors) = factors else { return Ok(Some(CoarseInverse::NOTHING)) };
-        let by = 1.0 / (unit * unit);
-        if let Ok(factor) = factors.factor(rows, held, (by, 0.0), |_| ())? {
-            if is_regular_factor(&factor)? {
-                return Ok(Some(CoarseInverse { unit, solver: Solver::Cholesky(factor) }));
-            }
-        }
-        if !Rung::SparseInverse.is_tried() {
-            return Ok(None);
-        }
-        let mut w = factors.gram().sum(rows, held)?;
-        w.val.iter_mut().for_each(|v| *v *= by);
-        let rows = FaceRows { g_transposed: rows, held, unit, whole, rounding };
-        let found = PseudoInverse::new(&w, factors.analysis(), &rows)?;
-        Ok(found.map(|found| CoarseInverse { unit, solver: Solver::Singular(Box::new(found)) }))
-    }
-
-    /// W+ by dense parts of single blocks.
-    pub fn inverse_by_blocks(
+    /// `W^-1` of the rows that are not held, or W+ if some motions are free or resisted weakly. `rows`: G', or other rows with its
+    /// pattern; a motion a is free if `|G_F a| <= rounding |G| |a|`.
+    pub fn inverse(
         &mut self,
         rows: &Csr,
         blocks: &[usize],
         held: &[bool],
         rounding: f64,
     ) -> Result<CoarseInverse> {
-        let mut known = match self.by_blocks.take() {
+        let &mut Self { unit, ref whole, ref mut factors, ref mut by_blocks, .. } = self;
+        let Some(factors) = factors else { return Ok(CoarseInverse::NOTHING) };
+        if !by_blocks.as_ref().is_some_and(|known| known.left_free) {
+            if let Ok(factor) = factors.factor(rows, held, (1.0 / (unit * unit), 0.0), |_| ())? {
+                if is_regular(&factor)? {
+                    return Ok(CoarseInverse { unit, solver: Solver::Cholesky(factor) });
+                }
+            }
+        }
+        let mut known = match by_blocks.take() {
             Some(known) => known,
-            None => Blocks::new(rows, blocks, &self.bounded, (self.unit, &self.whole, rounding))?,
+            None => Blocks::new(rows, blocks, &self.bounded, (unit, whole, rounding))?,
         };
         let found = known.inverse(held)?;
-        self.by_blocks = Some(known);
-        Ok(CoarseInverse { unit: self.unit, solver: Solver::Singular(Box::new(found)) })
+        *by_blocks = Some(known);
+        Ok(CoarseInverse { unit, solver: Solver::Singular(Box::new(found)) })
     }
 
     /// `(G D G' + s^2 D_+)^-1`, D = diag(`weight`), `D_+` by the diagonal of `G G' / s^2`; none without modes, or if it is not positive
@@ -151,7 +138,7 @@ impl CoarseInverse {
 
     /// Dimension of the kernel of `W_F`.
     pub fn deficiency(&self) -> usize {
-        self.singular().map_or(0, GeneralInverse::deficiency)
+        self.singular().map_or(0, ClusterInverse::deficiency)
     }
 
     /// T with `T'W_F T = I` for all motions that the face resists, r x rank; none if it resists all motions well.
@@ -166,13 +153,13 @@ impl CoarseInverse {
         match &self.solver {
             Solver::Nothing => false,
             Solver::Cholesky(factor) => factor.smallest_pivot() < WEAK,
-            Solver::Singular(solver) => solver.is_weak(),
+            Solver::Singular(solver) => solver.weak,
         }
     }
 
-    pub fn singular(&self) -> Option<&dyn GeneralInverse> {
+    pub fn singular(&self) -> Option<&ClusterInverse> {
         match &self.solver {
-            Solver::Singular(solver) => Some(&**solver),
+            Solver::Singular(solver) => Some(solver),
             _ => None,
         }
     }

@@ -4,12 +4,11 @@ pub mod clusters;
 pub mod dense;
 pub mod faces;
 mod resisted;
-pub mod sparse;
 
 use crate::error::Result;
 use crate::linalg::random::scattered;
 use crate::linalg::vector::norm;
-use crate::linalg::{Cholesky, Matrix};
+use crate::linalg::Cholesky;
 
 /// A matrix with its largest diagonal entry about 1 is singular if a pivot does not exceed this.
 pub const SINGULAR: f64 = 1e-11;
@@ -19,50 +18,24 @@ pub const SINGULAR: f64 = 1e-11;
 /// the cube root of 1e-16.
 pub const DOUBTFUL: f64 = 1e-5;
 
+/// A matrix with its largest diagonal entry about 1 has weakly resisted motions if a pivot is below this.
+pub const WEAK: f64 = 1e-4;
+
 /// Whether no motion is free. The computed factor L L' equals W up to about 1e-16 per entry, so it has no larger value
 /// along a free motion. If the pivots are doubtful, inverse iteration finds its smallest eigenvalue.
-fn is_regular(
-    order: usize,
-    smallest_pivot: f64,
-    mut solve: impl FnMut(&mut [f64]) -> Result<()>,
-) -> Result<bool> {
+pub fn is_regular(factor: &Cholesky) -> Result<bool> {
     const ITERATIONS: usize = 3;
     const FREE: f64 = 1e-13;
+    let smallest_pivot = factor.smallest_pivot();
     if smallest_pivot <= SINGULAR || smallest_pivot > DOUBTFUL {
         return Ok(smallest_pivot > DOUBTFUL);
     }
-    let (mut x, mut eigenvalue) = (scattered(order), 0.0);
+    let (mut x, mut eigenvalue) = (scattered(factor.analysis.position.len()), 0.0);
     for _ in 0..ITERATIONS {
         let length = norm(&x);
         x.iter_mut().for_each(|v| *v /= length);
-        solve(&mut x)?;
+        factor.solve(&mut x)?;
         eigenvalue = 1.0 / norm(&x);
     }
     Ok(eigenvalue > FREE)
-}
-
-/// As `is_regular`, for a sparse factor.
-pub fn is_regular_factor(factor: &Cholesky) -> Result<bool> {
-    is_regular(factor.analysis.position.len(), factor.smallest_pivot(), |x| factor.solve(x))
-}
-
-/// `W+` of a singular or nearly singular matrix.
-pub trait GeneralInverse {
-    /// The solution of minimum norm.
-    fn solve(&self, b: &[f64]) -> Result<Vec<f64>>;
-
-    /// `x += a N N'b`, N an orthonormal basis of the kernel.
-    fn add_kernel_part(&self, a: f64, b: &[f64], x: &mut [f64]);
-
-    /// Dimension of the kernel.
-    fn deficiency(&self) -> usize;
-
-    /// Basis of a complement of the kernel, n x rank.
-    fn basis(&self) -> Matrix;
-
-    /// Basis of the kernel, n x deficiency.
-    fn kernel(&self) -> Matrix;
-
-    /// Some motions are resisted so weakly that rounding of `G_F v` matters in `W+ G_F v`.
-    fn is_weak(&self) -> bool;
 }

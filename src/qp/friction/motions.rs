@@ -62,10 +62,7 @@ impl<'a> Motions<'a> {
         for (i, weight) in weights.iter().enumerate() {
             weighted.val[rows.ptr[i]..rows.ptr[i + 1]].iter_mut().for_each(|v| *v *= weight);
         }
-        let inverse = match self.space.inverse(&weighted, &self.nothing_held, cut)? {
-            Some(inverse) => inverse,
-            None => self.space.inverse_by_blocks(&weighted, self.blocks, &self.nothing_held, cut)?,
-        };
+        let inverse = self.space.inverse(&weighted, self.blocks, &self.nothing_held, cut)?;
         // the blocks are those of these rows
         self.space.by_blocks = None;
         Ok(Turned { rows, weights, inverse })

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::block::Block;
-use crate::linalg::semidefinite::GeneralInverse;
 use crate::linalg::{Cholesky, Matrix};
 
 /// `W+` of one face.
@@ -15,6 +14,7 @@ pub struct ClusterInverse {
     pub factor: Arc<Cholesky>,
     pub held: Vec<usize>,
     pub clusters: Vec<Cluster>,
+    /// Some motions are resisted so weakly that rounding of `G_F v` matters in `W+ G_F v`.
     pub weak: bool,
 }
 
@@ -27,14 +27,12 @@ pub struct Cluster {
     pub weak: Matrix,
 }
 
-impl GeneralInverse for ClusterInverse {
-    fn solve(&self, b: &[f64]) -> Result<Vec<f64>> {
+impl ClusterInverse {
+    /// The solution of minimum norm.
+    pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>> {
         let mut b = b.to_vec();
         self.clusters.iter().for_each(|cluster| cluster.project(&mut b));
-        let mut y = self.in_blocks(&b);
-        self.factor.solve(&mut y)?;
-        self.held.iter().for_each(|&i| y[i] = 0.0);
-        let mut x = self.of_blocks(&y);
+        let mut x = self.of_factor(&b)?;
         for Cluster { columns, weak, .. } in &self.clusters {
             let own: Vec<f64> = columns.iter().map(|&column| b[column]).collect();
             add(weak, &weak.mul_transposed(&own), columns, &mut x);
@@ -43,7 +41,16 @@ impl GeneralInverse for ClusterInverse {
         Ok(x)
     }
 
-    fn add_kernel_part(&self, a: f64, b: &[f64], x: &mut [f64]) {
+    /// `T (T'W T)^-1 T'b` without the held unknowns.
+    pub fn of_factor(&self, b: &[f64]) -> Result<Vec<f64>> {
+        let mut y = self.in_blocks(b);
+        self.factor.solve(&mut y)?;
+        self.held.iter().for_each(|&i| y[i] = 0.0);
+        Ok(self.of_blocks(&y))
+    }
+
+    /// `x += a N N'b`, N an orthonormal basis of the kernel.
+    pub fn add_kernel_part(&self, a: f64, b: &[f64], x: &mut [f64]) {
         for (k, block) in self.blocks.iter().enumerate().filter(|(_, block)| block.free.cols > 0) {
             let columns = self.starts[k]..self.starts[k + 1];
             block.free.mul_add(a, &block.free.mul_transposed(&b[columns.clone()]), &mut x[columns]);
@@ -54,12 +61,14 @@ impl GeneralInverse for ClusterInverse {
         }
     }
 
-    fn deficiency(&self) -> usize {
+    /// Dimension of the kernel.
+    pub fn deficiency(&self) -> usize {
         self.blocks.iter().map(|block| block.free.cols).sum::<usize>()
             + self.clusters.iter().map(|cluster| cluster.free.cols).sum::<usize>()
     }
 
-    fn kernel(&self) -> Matrix {
+    /// Basis of the kernel, r x deficiency.
+    pub fn kernel(&self) -> Matrix {
         let mut basis = self.none();
         for (k, block) in self.blocks.iter().enumerate() {
             let columns: Vec<usize> = (self.starts[k]..self.starts[k + 1]).collect();
@@ -69,8 +78,8 @@ impl GeneralInverse for ClusterInverse {
         basis
     }
 
-    /// T without the held unknowns, and V.
-    fn basis(&self) -> Matrix {
+    /// Basis of a complement of the kernel, r x rank: T without the held unknowns, and V.
+    pub fn basis(&self) -> Matrix {
         let mut basis = self.none();
         for (k, block) in self.blocks.iter().enumerate() {
             let columns: Vec<usize> = (self.starts[k]..self.starts[k + 1]).collect();
@@ -82,12 +91,6 @@ impl GeneralInverse for ClusterInverse {
         basis
     }
 
-    fn is_weak(&self) -> bool {
-        self.weak
-    }
-}
-
-impl ClusterInverse {
     fn none(&self) -> Matrix {
         Matrix { rows: self.starts[self.starts.len() - 1], ..Matrix::default() }
     }

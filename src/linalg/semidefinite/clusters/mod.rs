@@ -1,11 +1,11 @@
-//! Sparse positive semidefinite systems `W x = b`, W = G_F G_F', with free motions in many places: x of minimum norm,
-//! without any dense matrix over all of W.
+//! Sparse positive semidefinite systems `W x = b`, W = G_F G_F', with free motions: x of minimum norm, without any dense
+//! matrix over all of W.
 //!
 //! The columns of G form blocks, one for each body. The motions Z that the rows of a block alone leave free are found in
 //! the block, and `T'W_pp T = I` scales the others to equal size. The sparse factor of T'W T then holds the unknowns
-//! whose pivots are rounding; each represents one motion of a cluster of blocks, `T n`, where `W n = 0` except at the
-//! held unknowns. The images of these motions under G_F show which of them are free: they are far more accurate than the
-//! pivots.
+//! whose pivots may be rounding (`DOUBTFUL`); each represents one motion of a cluster of blocks, `T n`, where `W n = 0`
+//! except at the held unknowns. The images of these motions under G_F show which of them are free: they are far more
+//! accurate than the pivots.
 
 mod block;
 mod inverse;
@@ -19,18 +19,17 @@ use std::sync::Arc;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::semidefinite::resisted::sorted;
-use crate::linalg::semidefinite::sparse::WEAK;
-use crate::linalg::semidefinite::{is_regular_factor, DOUBTFUL};
-use crate::linalg::vector::dot;
+use crate::linalg::semidefinite::{DOUBTFUL, WEAK};
+use crate::linalg::vector::{dot, norm, NOISE};
 use crate::linalg::{Cholesky, Csr, Matrix, Symmetric};
 use crate::platform::memory::{headroom, headroom_with, SMALL_MATRICES};
 use block::Block;
-use inverse::{Cluster, ClusterInverse};
-use motions::{ByColumn, Motion};
+use inverse::Cluster;
+pub use inverse::ClusterInverse;
+use motions::{length, ByColumn, Motion};
 
-/// Pivots of T'W T, with unit diagonal, are held up to the first of these, or up to the second if that leaves a free
-/// motion: then the factor of the rest is accurate, and weakly resisted motions are separated from free ones afterwards.
-const HOLD: [f64; 2] = [1e-8, DOUBTFUL];
+/// A motion of a cluster is corrected so often: each separates it from what the rows resist well.
+const REFINEMENTS: usize = 2;
 const WHAT: &str = "the coarse space";
 
 /// G' by blocks, with the pattern of T'W T and the results for single blocks.
@@ -42,8 +41,8 @@ pub struct Blocks {
     by_column: ByColumn,
     /// The rows that touch each block.
     met: Csr,
-    /// Diagonal of `G G' / s^2`.
-    whole: Vec<f64>,
+    /// |G|/s of the columns that share a row with each block.
+    sizes: Vec<f64>,
     rounding: f64,
     /// Blocks with one T for all faces.
     fixed: Vec<Option<Arc<Block>>>,
@@ -56,6 +55,8 @@ pub struct Blocks {
     factors: FaceFactors,
     /// The motions of the last face.
     motions: Vec<Motion>,
+    /// The last face had free motions: the next face is likely to have some.
+    pub left_free: bool,
 }
 
 impl Blocks {
@@ -84,12 +85,12 @@ impl Blocks {
             blocks_of.push_row(met.into_iter().map(|k| (k, 1.0)));
         }
         let met = blocks_of.transposed()?;
+        let sizes = sizes(&blocks_of, &met, &starts, whole);
         let mut fixed = Vec::with_capacity(met.rows());
         for (k, columns) in starts.windows(2).enumerate() {
             let own =
                 |of: bool| of_block(&rows, met.row(k).map(|(i, _)| i).filter(|&i| bounded[i] == of), columns);
-            let size = whole[columns[0]..columns[1]].iter().sum::<f64>().sqrt();
-            fixed.push(Block::for_all_faces(own(false), &own(true), rounding * size)?.map(Arc::new));
+            fixed.push(Block::for_all_faces(own(false), &own(true), (rounding, sizes[k]))?.map(Arc::new));
         }
         let varies = |i: usize| bounded[i] || blocks_of.row(i).any(|(k, _)| fixed[k].is_none());
         let is_varying: Vec<bool> = (0..rows.rows()).map(varies).collect();
@@ -99,16 +100,22 @@ impl Blocks {
             known: vec![None; met.rows()],
             varying: (0..rows.rows()).filter(|&i| is_varying[i]).collect(),
             factors: FaceFactors::new(&rows, is_varying)?,
-            whole: whole.to_vec(),
             starts,
             rows,
             met,
+            sizes,
             rounding,
             fixed,
             motions: Vec::new(),
+            left_free: false,
         };
         (0..blocks.rows.rows()).for_each(|i| blocks.turn(i, &[], false));
         Ok(blocks)
+    }
+
+    /// Forgets the last face: another solve finds what it would find alone.
+    pub fn forget_face(&mut self) {
+        (self.motions, self.left_free) = (Vec::new(), false);
     }
 
     /// `W+` over the rows that are not held.
@@ -127,18 +134,10 @@ impl Blocks {
             }
         };
         let infinite = |_| Error::new(Kind::Internal, "a coarse matrix is not finite");
-        let factor = self.factors.factor(&self.turned, held, (1.0, HOLD[0]), complete)?.map_err(infinite)?;
-        let is_certain = factor.smallest_pivot() > DOUBTFUL;
-        if is_regular_factor(&factor)? {
-            let inverse = self.by_factor(factor, &blocks, held)?;
-            if is_certain || inverse.clusters.iter().all(|cluster| cluster.weak.cols == 0) {
-                return Ok(inverse);
-            }
-        }
-        let mut w = self.factors.gram().sum(&self.turned, held)?;
-        complete(&mut w);
-        let factor = self.factors.analysis().pivoted(&w, 1.0, HOLD[1])?.map_err(infinite)?;
-        self.by_factor(Arc::new(factor), &blocks, held)
+        let factor = self.factors.factor(&self.turned, held, (1.0, DOUBTFUL), complete)?.map_err(infinite)?;
+        let inverse = self.by_factor(factor, &blocks, held)?;
+        self.left_free = inverse.deficiency() > 0;
+        Ok(inverse)
     }
 
     /// W+ by the factor of T'W T and the motions of its held unknowns.
@@ -157,15 +156,20 @@ impl Blocks {
             clusters: Vec::new(),
         };
         let rows = (&self.turned, &self.by_column);
-        let motions = inverse.motions(rows, (&self.whole, self.rounding), &self.motions)?;
+        let motions = inverse.motions(rows, (&self.sizes, self.accuracy()), &self.motions)?;
         let mut local = vec![None; self.rows.cols];
         for members in inverse.clusters_of(&motions, held.len()) {
-            let cluster = self.cluster(&members, &motions, held, &mut local)?;
+            let cluster = self.cluster(&inverse, (&members, &motions), held, &mut local)?;
             inverse.weak |= cluster.weak.cols > 0;
             inverse.clusters.push(cluster);
         }
         self.motions = motions;
         Ok(inverse)
+    }
+
+    /// Relative accuracy of motions, also where more counts as free.
+    fn accuracy(&self) -> f64 {
+        self.rounding.min(NOISE)
     }
 
     fn columns(&self, k: usize) -> Range<usize> {
@@ -182,8 +186,7 @@ impl Blocks {
             return Ok(Arc::clone(block));
         }
         let own = of_block(&self.rows, left.iter().copied(), &self.starts[k..k + 2]);
-        let size = self.whole[self.columns(k)].iter().sum::<f64>().sqrt();
-        let block = Arc::new(Block::new(own, self.rounding * size)?);
+        let block = Arc::new(Block::new(own, (self.rounding, self.sizes[k]))?);
         self.known[k] = Some((left, Arc::clone(&block)));
         Ok(block)
     }
@@ -207,8 +210,8 @@ impl Blocks {
     /// The motions of some held unknowns. `local`: work array, none before and after.
     fn cluster(
         &self,
-        members: &[usize],
-        motions: &[Motion],
+        inverse: &ClusterInverse,
+        (members, motions): (&[usize], &[Motion]),
         held: &[bool],
         local: &mut [Option<usize>],
     ) -> Result<Cluster> {
@@ -225,18 +228,49 @@ impl Blocks {
         blocks.iter().flat_map(|&k| self.met.row(k)).for_each(|(i, _)| meets[i] = !held[i]);
         let rows: Vec<usize> = (0..held.len()).filter(|&i| meets[i]).collect();
         columns.iter().enumerate().for_each(|(at, &column)| local[column] = Some(at));
-        let motions = together.orthonormalised(0.0);
-        let mut images = vec![vec![0.0; rows.len()]; motions.cols];
-        for (row, &i) in rows.iter().enumerate() {
-            for (at, v) in self.rows.row(i).filter_map(|(column, v)| Some((local[column]?, v))) {
-                images.iter_mut().enumerate().for_each(|(j, image)| image[row] += v * motions.get(at, j));
+        let (mut motions, size) = (together.orthonormalised(0.0), length(&self.sizes, &blocks));
+        let mut images: Vec<Vec<f64>> =
+            (0..motions.cols).map(|j| self.image(motions.col(j), &rows, local)).collect();
+        let below = self.accuracy() * size / (motions.cols as f64).sqrt();
+        for (j, image) in images.iter_mut().enumerate() {
+            for _ in 0..REFINEMENTS {
+                if norm(image) <= below {
+                    break;
+                }
+                let mut resultant = vec![0.0; self.rows.cols];
+                for (&i, along) in rows.iter().zip(&*image) {
+                    self.rows.row(i).for_each(|(column, v)| resultant[column] += v * along);
+                }
+                let resisted = inverse.of_factor(&resultant)?;
+                motions.col_mut(j).iter_mut().zip(&columns).for_each(|(v, &column)| *v -= resisted[column]);
+                *image = self.image(motions.col(j), &rows, local);
             }
         }
         columns.iter().for_each(|&column| local[column] = None);
-        let size = columns.iter().map(|&column| self.whole[column]).sum::<f64>().sqrt();
         let (free, weak) = sorted(&motions, images, self.rounding * size)?;
         Ok(Cluster { columns, free, weak })
     }
+
+    /// The entries of some rows along a motion, whose amplitude in a column is at `local` of it.
+    fn image(&self, motion: &[f64], rows: &[usize], local: &[Option<usize>]) -> Vec<f64> {
+        let along = |&i: &usize| {
+            self.rows.row(i).map(|(column, v)| local[column].map_or(0.0, |at| v * motion[at])).sum()
+        };
+        rows.iter().map(along).collect()
+    }
+}
+
+/// For each block, |G|/s of the columns of all blocks that share a row with it. `whole`: diagonal of `G G' / s^2`.
+fn sizes(blocks_of: &Csr, met: &Csr, starts: &[usize], whole: &[f64]) -> Vec<f64> {
+    let own = |k: usize| whole[starts[k]..starts[k + 1]].iter().sum::<f64>();
+    let near = |k: usize| {
+        let mut near: Vec<usize> =
+            met.row(k).flat_map(|(i, _)| blocks_of.row(i).map(|(k, _)| k)).chain([k]).collect();
+        near.sort_unstable();
+        near.dedup();
+        near.into_iter().map(own).sum::<f64>().sqrt()
+    };
+    (0..met.rows()).map(near).collect()
 }
 
 /// The entries of some rows in the columns of one block, from the first to the last of `columns`.

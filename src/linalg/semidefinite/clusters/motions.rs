@@ -9,8 +9,6 @@ use crate::linalg::vector::{norm, norm_max, LONG};
 use crate::linalg::Csr;
 use crate::platform::threads::parts;
 
-/// A block moves if its motion exceeds this part of the largest entry.
-const MOVES: f64 = 1e-9;
 /// Limit of corrections; after a few, the images of the motions are accurate to rounding.
 const CORRECTIONS: usize = 8;
 /// The first corrections are restricted to the unknowns below the held one in the elimination: a free motion moves no
@@ -61,7 +59,7 @@ impl ClusterInverse {
         &self,
         own: Range<usize>,
         mut images: Images,
-        (whole, rounding): (&[f64], f64),
+        (sizes, rounding): (&[f64], f64),
         before: &[Motion],
     ) -> Result<Vec<Motion>> {
         let mut motions = Vec::with_capacity(own.len());
@@ -78,7 +76,7 @@ impl ClusterInverse {
                 moved.iter().for_each(|&k| n[k] = 0.0);
                 moved = self.corrected(at, &mut n, &mut images, rounding)?;
             }
-            motions.push(self.motion(at, &n, &moved, (&images.along, &images.resisting), (whole, rounding)));
+            motions.push(self.motion(at, &n, &moved, (&images.along, &images.resisting), (sizes, rounding)));
             moved.iter().for_each(|&k| n[k] = 0.0);
         }
         Ok(motions)
@@ -127,7 +125,7 @@ impl ClusterInverse {
         n: &[f64],
         moved: &[usize],
         (along, resisting): (&[f64], &[usize]),
-        (whole, rounding): (&[f64], f64),
+        (sizes, rounding): (&[f64], f64),
     ) -> Motion {
         let block_of = |k: &usize| self.starts.partition_point(|start| start <= k) - 1;
         let mut blocks: Vec<usize> = moved.iter().map(block_of).collect();
@@ -144,10 +142,9 @@ impl ClusterInverse {
             let at = columns.partition_point(|column| *column < self.starts[*k]);
             &amplitudes[at..at + self.starts[*k + 1] - self.starts[*k]]
         };
-        let least = MOVES * norm_max(&amplitudes);
+        let least = rounding * norm_max(&amplitudes);
         blocks.retain(|k| norm_max(part(k)) > least);
-        let size = blocks.iter().map(|&k| whole[self.starts[k]..self.starts[k + 1]].iter().sum::<f64>());
-        let least = rounding * size.sum::<f64>().sqrt() * norm(&amplitudes);
+        let least = rounding * length(sizes, &blocks) * norm(&amplitudes);
         let rows = resisting.iter().copied().filter(|&i| along[i].abs() > least).collect();
         let n = moved.iter().map(|&k| (k, n[k])).collect();
         Motion { at, n, columns, amplitudes, blocks, rows }
@@ -260,6 +257,6 @@ impl<'a> Images<'a> {
 }
 
 /// |x| over some entries.
-fn length(x: &[f64], entries: &[usize]) -> f64 {
+pub fn length(x: &[f64], entries: &[usize]) -> f64 {
     entries.iter().map(|&i| x[i] * x[i]).sum::<f64>().sqrt()
 }

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::linalg::random::scattered;
-use crate::linalg::semidefinite::GeneralInverse;
 use crate::linalg::vector::{axpy, dot, norm};
 
 /// Stones with two modes (across, up) in a chain: rows join neighbours in the direction up, every third pair also across;
@@ -90,4 +89,38 @@ fn a_motion_that_all_but_ends_before_its_last_unknown_is_free() {
             assert_eq!(blocks.inverse(&held).unwrap().deficiency(), 1, "{little:e} {i} {j}");
         }
     }
+}
+
+/// Chains of springs between these numbers of masses, one row per spring: free chains, and `held` chains with a spring to
+/// the ground; a single mass has no spring.
+fn chains(lengths: &[(usize, bool)]) -> Csr {
+    let mut springs = Csr::empty(lengths.iter().map(|(length, _)| length).sum());
+    let mut first = 0;
+    for &(length, held) in lengths {
+        (0..usize::from(held)).for_each(|_| springs.push_row([(first, 0.7)]));
+        (first + 1..first + length).for_each(|i| springs.push_row([(i - 1, -0.7), (i, 0.7)]));
+        first += length;
+    }
+    springs
+}
+
+#[test]
+fn small_and_large_singular_parts_beside_regular_ones_are_solved_and_counted() {
+    let g = chains(&[(100, true), (60, false), (3, true), (2, false), (1, false), (80, false), (70, true)]);
+    let (columns, held) = (g.cols, vec![false; g.rows()]);
+    let mut blocks = Blocks::new(&g, &[], &held, (1.0, &whole(&g), 1e-14)).unwrap();
+    let inverse = blocks.inverse(&held).unwrap();
+    let kernel = inverse.kernel();
+    assert_eq!((inverse.deficiency(), kernel.cols), (4, 4));
+    let product = |a: &[f64]| {
+        let (mut along, mut image) = (vec![0.0; g.rows()], vec![0.0; columns]);
+        g.mul(a, &mut along);
+        g.mul_transposed_add(1.0, &along, &mut image);
+        image
+    };
+    assert!((0..kernel.cols).all(|j| product(kernel.col(j)).iter().all(|v| v.abs() < 1e-12)));
+    let b = product(&(0..columns).map(|i| (1.0 + i as f64).sin()).collect::<Vec<_>>());
+    let x = inverse.solve(&b).unwrap();
+    assert!(product(&x).iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-10));
+    assert!((0..kernel.cols).all(|j| dot(kernel.col(j), &x).abs() < 1e-9), "not of minimum norm");
 }
