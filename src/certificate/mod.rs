@@ -20,11 +20,13 @@ mod grounded;
 mod row;
 mod rows;
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use crate::body::Stiffness;
 use crate::constraints::{FrictionNode, RowKind, RowSet};
 use crate::error::Result;
+use crate::linalg::vector::{norm_max, power_of_two_below};
 use crate::linalg::Matrix;
 
 pub use crate::linalg::vector::NOISE;
@@ -69,6 +71,29 @@ impl<'a> Data<'a> {
             RowKind::Equality => self.equalities,
             RowKind::Tangential => self.tangential,
         }
+    }
+
+    /// Where nothing has stiffness, no force deforms anything, and D may be any number: then it is the force by the way, of the
+    /// unknowns, of rows with a force and of slips so far, so that gaps are relative to this way.
+    fn measured_by(&self, answer: Candidate) -> Cow<'_, Self> {
+        if self.bodies.iter().any(|body| body.stiffness.largest_diagonal() > 0.0) {
+            return Cow::Borrowed(self);
+        }
+        let loads = self.bodies.iter().map(|body| norm_max(body.load.unwrap_or_default()));
+        let (mut force, mut way) = (loads.fold(0.0, f64::max), norm_max(answer.u));
+        for kind in RowKind::ALL {
+            let rows = self.rows(kind);
+            for (i, f) in answer.forces(kind).iter().enumerate() {
+                let b = rows.matrix.row(i).fold(0.0, |most: f64, (_, b)| most.max(b.abs()));
+                if b > 0.0 && (*f != 0.0 || kind == RowKind::Tangential) {
+                    force = force.max(b * f.abs());
+                    way = way.max(rows.rhs[i].abs() / b);
+                }
+            }
+        }
+        let unit = power_of_two_below((force / way).min(2f64.powi(500)));
+        let bodies = self.bodies.iter().map(|body| BodyData { unit, ..body.clone() }).collect();
+        Cow::Owned(Self { bodies, ..self.clone() })
     }
 
     /// Grounded unknowns of all bodies.
@@ -187,6 +212,7 @@ pub enum FrictionState {
 
 /// The judgement of an answer. Fails if the host's products with K fail.
 pub fn certify(data: &Data, answer: Candidate) -> Result<Judgement> {
+    let data = &*data.measured_by(answer);
     let field = Field::new(data, answer)?;
     let deformation = Deformation::new(&field)?;
     let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };

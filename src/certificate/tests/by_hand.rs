@@ -304,3 +304,26 @@ fn what_rounding_leaves_on_a_part_without_load_is_nothing() {
         assert!(!judged(load, forces).passed(), "{load:e} {forces:?}");
     }
 }
+
+/// Two masses without any stiffness, pushed against walls at 1 and 3: no force gives a length, whatever its unit.
+#[test]
+fn gaps_of_what_has_no_stiffness_are_judged_by_its_way() {
+    for (force, length) in [(1e25, 1e6), (1.0, 1.0), (1e-20, 1e-3), (1e20, 1e-20)] {
+        let parts = vec![chain(&[], &[]).loaded(&[(0, force)]), chain(&[], &[]).loaded(&[(0, 2.0 * force)])];
+        let contact = vec![(vec![(0, 1.0)], length, 0.0), (vec![(1, 0.5)], 1.5 * length, 0.0)];
+        let model = DenseModel { parts, contact, ..DenseModel::default() };
+        let judged = |u: [f64; 2]| {
+            let u = u.map(|u| u * length).to_vec();
+            model.certificate(&DenseAnswer {
+                u,
+                lambda: vec![force, 4.0 * force],
+                mu: vec![],
+                tangential: vec![],
+            })
+        };
+        assert!(judged([1.0, 3.0]).passed() && judged([1.0 + 1e-10, 3.0 - 1e-10]).passed(), "{force:e}");
+        for u in [[1.0, 3.0 + 1e-6], [1.0 + 1e-6, 3.0], [1.0, 3.0 - 1e-6], [0.0, 0.0], [1.0, 0.0]] {
+            assert!(!judged(u).passed(), "{force:e} {u:?}");
+        }
+    }
+}

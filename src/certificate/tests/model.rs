@@ -102,7 +102,8 @@ impl DenseBody {
     fn null_space(&self) -> Matrix {
         let (n, unit) = (self.k.len(), self.unit());
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        let inner = |a: &[f64], b: &[f64]| (0..n).map(|i| self.k[i][i] / unit * a[i] * b[i]).sum::<f64>();
+        let metric = |i: usize| if self.k[i][i] == 0.0 { 1.0 } else { self.k[i][i] / unit };
+        let inner = |a: &[f64], b: &[f64]| (0..n).map(|i| metric(i) * a[i] * b[i]).sum::<f64>();
         for motion in &self.motions {
             let mut v = motion.clone();
             for _ in 0..2 {
