@@ -36,18 +36,29 @@ impl Deformation {
     }
 }
 
-/// `|r_j| / D~_j` of grounded and carried unknowns, r the forces of the rows; `|u - R a|` of the others.
+/// `|r_j| / D~_j` of grounded and carried unknowns, r the forces of the rows; `|u - R a|` of the others. What a carried unknown passes
+/// into the ground by a row of its own deforms nothing.
 fn own(field: &Field) -> Result<Vec<f64>> {
     let mut own = without_motions(field)?;
+    let mut push = field.push.clone();
+    for kind in RowKind::ALL {
+        let (rows, forces) = (field.rows(kind), field.answer.forces(kind));
+        for i in (0..rows.len()).filter(|i| forces[*i] != 0.0) {
+            let mut entries = rows.matrix.row(i);
+            if let (Some((j, b)), None) = (entries.next(), entries.next()) {
+                push[j] -= if field.carried[j] { b * forces[i] } else { 0.0 };
+            }
+        }
+    }
     for j in (0..own.len()).filter(|j| field.grounded[*j] || field.carried[*j]) {
-        own[j] = field.push[j].abs() / field.unit / field.metric[j];
+        own[j] = (push[j].abs() / field.unit / field.metric[j]).min(field.answer.u[j].abs());
     }
     Ok(own)
 }
 
 /// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, since a single unknown may be at rest by symmetry, and for carried unknowns the
-/// same by what their rows give them, `1/2 sum_i |b_ij| sum_l |b_il| delta_l / (D~_j sum_l b_il^2 / D~_l)`; delta_j for grounded
-/// unknowns.
+/// same by what their rows give them, `1/2 sum_i |b_ij| sum_l |b_il| delta_l / (D~_j (sum_l b_il^2 / D~_l + C_i))`; delta_j for
+/// grounded unknowns.
 fn with_neighbours(field: &Field, own: &[f64]) -> Result<Vec<f64>> {
     let mut all = own.to_vec();
     for (p, body) in field.data.bodies.iter().enumerate() {
@@ -76,6 +87,7 @@ fn by_rows(field: &Field, own: &[f64]) -> Vec<f64> {
                 let others = || rows.matrix.row(i).filter(|(l, _)| *l != j);
                 let moved: f64 = others().map(|(l, b)| b.abs() * own[l]).sum();
                 let yielding: f64 = others().map(|(l, b)| b * b / field.metric[l]).sum();
+                let yielding = yielding + field.unit * rows.compliance[i];
                 led[j] += ratio(b.abs() * moved, field.metric[j] * yielding);
             }
         }
@@ -83,8 +95,8 @@ fn by_rows(field: &Field, own: &[f64]) -> Vec<f64> {
     led
 }
 
-/// `|u - R a|`, n, length. a is the least-squares fit, in D without the grounded unknowns, of the rigid motions that the
-/// rigid equality rows between bodies do not resist, `H R a = 0`; rows on one body alone are ignored. `|u|` on bodies
+/// `|u - R a|`, n, length. a is the least-squares fit, in D without the grounded unknowns, of the rigid motions that
+/// satisfy the rigid equality rows between bodies, `H R a = h`; rows on one body alone are ignored. `|u|` on bodies
 /// without a null space.
 fn without_motions(field: &Field) -> Result<Vec<f64>> {
     let data = field.data;
@@ -101,8 +113,8 @@ fn without_motions(field: &Field) -> Result<Vec<f64>> {
         for p in 0..data.bodies.len() {
             amplitudes.extend(fitted(field, p).into_iter().map(|a| a * weights[p]));
         }
-        let joints = joints(field, &first, &weights);
-        let kept = project(&joints, amplitudes)?;
+        let (joints, given) = joints(field, &first, &weights);
+        let kept = nearest(&joints, &given, amplitudes)?;
         for (p, body) in data.bodies.iter().enumerate() {
             let a: Vec<f64> = kept[first[p]..first[p + 1]].iter().map(|b| b / weights[p]).collect();
             field.motions[p].0.mul_add(-1.0, &a, &mut left[body.range()]);
@@ -139,10 +151,10 @@ fn fitted(field: &Field, p: usize) -> Vec<f64> {
     all
 }
 
-/// `H R` of the rigid equality rows that join two or more bodies, each scaled to length 1, m x (modes of all bodies).
-fn joints(field: &Field, first: &[usize], weights: &[f64]) -> Csr {
+/// `H R`, m x (modes of all bodies), and h of the rigid equality rows that join two or more bodies, each scaled to length 1.
+fn joints(field: &Field, first: &[usize], weights: &[f64]) -> (Csr, Vec<f64>) {
     let rows = field.data.equalities;
-    let mut joints = Csr::empty(first[field.data.bodies.len()]);
+    let (mut joints, mut given) = (Csr::empty(first[field.data.bodies.len()]), Vec::new());
     for i in (0..rows.len()).filter(|i| rows.compliance[*i] == 0.0) {
         if field.touched(rows, i).nth(1).is_none() {
             continue;
@@ -159,9 +171,10 @@ fn joints(field: &Field, first: &[usize], weights: &[f64]) -> Csr {
         let length = norm(&entries.iter().map(|(_, v)| *v).collect::<Vec<_>>());
         if length.is_normal() {
             joints.push_row(entries.into_iter().map(|(j, v)| (j, v / length)));
+            given.push(rows.rhs[i] / length);
         }
     }
-    joints
+    (joints, given)
 }
 
 /// `h R`, r, of the entries of a row on one body; 0 if it is rounding.
@@ -178,9 +191,10 @@ fn resisted(entries: &[(usize, f64)], motions: &Matrix) -> Vec<f64> {
     (0..motions.cols).map(of).collect()
 }
 
-/// `b - A^+ A b`, the part of b in the kernel of A: `b <- b - (A'A + delta I)^-1 A'A b` with decreasing delta, while `A
-/// b` is more than rounding. Very small resistance, which comes from errors of R, does not count as a joint.
-fn project(a: &Csr, mut b: Vec<f64>) -> Result<Vec<f64>> {
+/// `b - A^+ (A b - h)`, the motions nearest to b with `A b = h`: `b <- b - (A'A + delta I)^-1 A'(A b - h)` with decreasing delta,
+/// while `A b - h` is more than rounding. Very small resistance, which comes from errors of R, does not count as a joint, nor
+/// does what asks for a step longer than b: joints that contradict each other deform.
+fn nearest(a: &Csr, h: &[f64], mut b: Vec<f64>) -> Result<Vec<f64>> {
     let joined = Gram::of(a)?;
     let mut w = joined.sum(a, &vec![false; a.rows()])?;
     let diagonal: Vec<f64> = (0..a.cols).map(|k| w.diagonal(k)).collect();
@@ -200,11 +214,15 @@ fn project(a: &Csr, mut b: Vec<f64>) -> Result<Vec<f64>> {
         let Ok(factor) = analysis.attempt(&w, 1.0)? else { break };
         for _ in 0..PASSES {
             a.mul(&b, &mut image);
+            axpy(-1.0, h, &mut image);
             if norm(&image) <= ROUNDING * largest.sqrt() * norm(&b) {
                 return Ok(b);
             }
             let mut step = a.mul_transposed(&image);
             factor.solve(&mut step)?;
+            if norm(&step) > norm(&b) {
+                return Ok(b);
+            }
             axpy(-1.0, &step, &mut b);
         }
     }
@@ -222,7 +240,7 @@ mod tests {
         a.push_row([(0, half), (1, -half)]);
         a.push_row([(1, half), (2, -half)]);
         a.push_row([(0, half), (2, -half)]);
-        let kept = project(&a, vec![1.0, 2.0, 6.0, 7.0]).unwrap();
+        let kept = nearest(&a, &[0.0; 3], vec![1.0, 2.0, 6.0, 7.0]).unwrap();
         assert!(kept.iter().zip([3.0, 3.0, 3.0, 7.0]).all(|(b, e)| (b - e).abs() < 1e-14), "{kept:?}");
     }
 
@@ -233,7 +251,7 @@ mod tests {
         let half = 0.5_f64.sqrt();
         a.push_row([(0, half), (1, -half)]);
         a.push_row([(0, half), (1, -half * (1.0 + 1e-12))]);
-        let kept = project(&a, vec![1e6, 1e6 + 1.0]).unwrap();
+        let kept = nearest(&a, &[0.0; 2], vec![1e6, 1e6 + 1.0]).unwrap();
         assert!(kept.iter().all(|b| (b - 1e6 - 0.5).abs() < 1e-5), "{kept:?}");
     }
 }

@@ -61,7 +61,7 @@ impl<'a> Field<'a> {
         }
         let mut grounded = vec![false; n];
         for body in data.bodies.iter().filter(|body| !body.grounded.is_empty()) {
-            let moving = moving(body, &carried[body.range()])?;
+            let moving = moving(body)?;
             let free = |j: &&u32| carried[body.start + **j as usize] || moving.contains(j);
             let held = body.grounded.iter().filter(|j| !free(j));
             held.for_each(|j| grounded[body.start + *j as usize] = true);
@@ -141,18 +141,17 @@ fn motions<'a>(
 }
 
 /// Grounded unknowns j of a body that its null space moves nevertheless, `|K_jj R_j| > 1/4 sum_k |K_jk||R_k|`: they are
-/// held only by a stiff neighbour, which may itself move. The motion of a carried unknown is no such motion: K resists it, and it
-/// bends what a support holds.
-fn moving(body: &BodyData, carried: &[bool]) -> Result<HashSet<u32>> {
+/// held only by a stiff neighbour, which may itself move. The motion of what rows may carry is no such motion: K resists it, and
+/// it bends what a support holds.
+fn moving(body: &BodyData) -> Result<HashSet<u32>> {
     let (n, motions) = (body.null_space.rows, body.null_space);
     let (mut image, mut terms, mut moving) = (vec![0.0; n], vec![0.0; n], HashSet::new());
-    let any_carried = carried.contains(&true);
     for k in 0..motions.cols {
         let motion = motions.col(k);
         body.stiffness.mul_with_terms(motion, &mut image, &mut terms)?;
-        let work = || motion.iter().zip(&image).map(|(r, f)| r * f).sum::<f64>();
-        let of_terms = || motion.iter().zip(&terms).map(|(r, f)| r.abs() * f).sum::<f64>();
-        if any_carried && work() > NOISE * of_terms() {
+        let work: f64 = motion.iter().zip(&image).map(|(r, f)| r * f).sum();
+        let of_terms: f64 = motion.iter().zip(&terms).map(|(r, f)| r.abs() * f).sum();
+        if work > NOISE * of_terms {
             continue;
         }
         let moves = |j: usize| 4.0 * (body.stiffness.metric(j, 0.0) * motion[j]).abs() > terms[j];

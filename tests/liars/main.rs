@@ -19,6 +19,9 @@ use lies::Lie;
 
 /// Number of problems of the ordinary run.
 const PROBLEMS: u64 = 390;
+/// Problems of which lies were once accepted: pilots pressed on the ground by large loads, on springs or tied to what travels, and a
+/// penalty support beside unknowns that rows may carry.
+const ONCE_ACCEPTED: [u64; 7] = [213438, 257000635, 257014923, 258004880, 330000550, 330001283, 332003603];
 /// Cases beyond are counted, not judged (certificate.md 6).
 const CONDITION: f64 = 1e8;
 /// Lines of a table of failures.
@@ -71,7 +74,7 @@ fn of_all_cases(judge: impl Fn(&mut Tally, u64, &Varied, &mut Problem) + Sync) -
             let (tally, judge) = (&tally, &judge);
             scope.spawn(move || {
                 let mut own = Tally::default();
-                for seed in (first..first + count).filter(|seed| seed % 2 == part) {
+                for seed in (first..first + count).chain(ONCE_ACCEPTED).filter(|seed| seed % 2 == part) {
                     let case = match seed % 4 {
                         0 | 1 => varied::case(seed),
                         _ => varied::mixed(seed, &HOST_MIXTURE),

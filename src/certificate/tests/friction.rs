@@ -73,14 +73,14 @@ fn a_force_turned_in_space_is_seen_by_the_angle_itself() {
     }
 }
 
-/// Loaded by .75 the node sticks: u = 0, lambda_t = .75. L = 0 + .75 / 4 by its force, plus half of its neighbours.
+/// Loaded by .75 the node sticks: u = 0, lambda_t = .75. L = |u| + .75 / 4 by its force.
 #[test]
 fn a_stick_passes_and_a_slip_of_it_is_measured_as_a_length() {
     let model = springs(1.0, &[0.75], 1.0);
     let right = model.judged(&point(&[0.0], &[0.75]));
     assert!(right.certificate.worst() <= 0.1 && right.nodes == [FrictionState::Stick]);
-    let limit = (0.75 / 4.0 + 0.75 / 4.0) * LIMIT;
     for slip in [1e-5, 1e-8] {
+        let limit = (slip + 0.75 / 4.0) * LIMIT;
         let slips = model.certificate(&point(&[slip], &[0.75]));
         let ratio = (slip / limit).min(0.25 / (1.5 * LIMIT));
         assert!((slips.friction_work.ratio / ratio - 1.0).abs() < 1e-3, "{slips:?} {ratio}");

@@ -228,3 +228,53 @@ fn forces_that_are_lost_between_redundant_rows_are_refused() {
         assert_eq!(double.certificate(&shared).passed(), right, "{load:e} {excess:e}");
     }
 }
+
+/// A free chain of deformation .001 presses on a node on a spring kp, which a load of 1e4 presses on the ground.
+#[test]
+fn loads_that_go_straight_into_the_ground_excuse_no_gap() {
+    for kp in [1e-12, 1.0] {
+        let node = chain(&[], &[(0, kp)]).loaded(&[(0, 1e4)]);
+        let contact = vec![(vec![(2, 1.0)], 0.1, 0.0), (vec![(1, 1.0), (2, -1.0)], 1e-4, 0.0)];
+        let model = DenseModel {
+            parts: vec![chain(&[1.0], &[]).loaded(&[(0, 1e-3)]), node],
+            contact,
+            active: vec![0, 1],
+            ..DenseModel::default()
+        };
+        let mut wrong = model.accepted("pressed on a node");
+        wrong.u[0] += 1e-8;
+        wrong.u[1] += 1e-8;
+        model.refused("moved into the node", &wrong);
+    }
+}
+
+/// A node with a dummy stiffness hangs on a stiff body by a spring of 1: a displacement of 1 of the body moves it by 1, not by the
+/// ratio of the stiffnesses.
+#[test]
+fn a_soft_row_passes_on_what_its_spring_lets_through() {
+    let body = chain(&[1e8], &[(0, 1e8)]).loaded(&[(1, 1e8)]);
+    let model = DenseModel {
+        parts: vec![body, chain(&[], &[(0, 1e-9)]).loaded(&[(0, -1e-3)])],
+        contact: vec![(vec![(1, 1.0), (2, -1.0)], 0.0, 1.0)],
+        active: vec![0],
+        ..DenseModel::default()
+    };
+    let mut wrong = model.accepted("hung on a stiff body");
+    wrong.u[2] += 1e-4;
+    model.refused("hung elsewhere", &wrong);
+}
+
+/// A tie holds a free chain 1000 away from a held one, and its deformation is .001: a displacement that a tie prescribes is none.
+#[test]
+fn a_displacement_prescribed_by_a_tie_excuses_no_gap() {
+    let free = chain(&[1.0], &[]).loaded(&[(1, 1e-3)]);
+    let model = DenseModel {
+        parts: vec![chain(&[1.0], &[(0, 1.0)]), free],
+        equalities: vec![(vec![(1, -1.0), (2, 1.0)], 1e3, 0.0)],
+        ..DenseModel::default()
+    };
+    let mut wrong = model.accepted("tied at a distance");
+    wrong.u[2] += 1e-8;
+    wrong.u[3] += 1e-8;
+    model.refused("moved against the tie", &wrong);
+}
