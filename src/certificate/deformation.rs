@@ -192,8 +192,8 @@ fn resisted(entries: &[(usize, f64)], motions: &Matrix) -> Vec<f64> {
 }
 
 /// `b - A^+ (A b - h)`, the motions nearest to b with `A b = h`: `b <- b - (A'A + delta I)^-1 A'(A b - h)` with decreasing delta,
-/// while `A b - h` is more than rounding. Very small resistance, which comes from errors of R, does not count as a joint, nor
-/// does what asks for a step longer than b: joints that contradict each other deform.
+/// while `A b - h` is more than rounding. Very small resistance, which comes from errors of R, does not count as a joint. Where h asks
+/// for far longer motions, those with `A b = 0`.
 fn nearest(a: &Csr, h: &[f64], mut b: Vec<f64>) -> Result<Vec<f64>> {
     let joined = Gram::of(a)?;
     let mut w = joined.sum(a, &vec![false; a.rows()])?;
@@ -220,8 +220,9 @@ fn nearest(a: &Csr, h: &[f64], mut b: Vec<f64>) -> Result<Vec<f64>> {
             }
             let mut step = a.mul_transposed(&image);
             factor.solve(&mut step)?;
-            if norm(&step) > norm(&b) {
-                return Ok(b);
+            // joints that contradict each other, or are felt through errors of R alone; without h no step is longer than b
+            if norm(&step) > 2.0 * norm(&b) {
+                return nearest(a, &vec![0.0; a.rows()], b);
             }
             axpy(-1.0, &step, &mut b);
         }
@@ -242,6 +243,19 @@ mod tests {
         a.push_row([(0, half), (2, -half)]);
         let kept = nearest(&a, &[0.0; 3], vec![1.0, 2.0, 6.0, 7.0]).unwrap();
         assert!(kept.iter().zip([3.0, 3.0, 3.0, 7.0]).all(|(b, e)| (b - e).abs() < 1e-14), "{kept:?}");
+    }
+
+    /// Two joints that all but agree in direction, and once ask for distances that differ by 1e3.
+    #[test]
+    fn joints_that_contradict_each_other_prescribe_nothing() {
+        let mut a = Csr::empty(2);
+        let half = 0.5_f64.sqrt();
+        a.push_row([(0, half), (1, -half)]);
+        a.push_row([(0, half), (1, half * (1e-6 - 1.0))]);
+        let apart = nearest(&a, &[half, half * (1.0 + 1e-6)], vec![2.0, 1.1]).unwrap();
+        assert!((apart[0] - apart[1] - 1.0).abs() < 1e-5, "{apart:?}");
+        let together = nearest(&a, &[0.0, 1e3], vec![2.0, 1.1]).unwrap();
+        assert!((together[0] - together[1]).abs() < 1e-5, "{together:?}");
     }
 
     /// The second row resists the common motion only by rounding of R.
