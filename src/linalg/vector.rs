@@ -21,7 +21,8 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     dot_in_parts(x, y)
 }
 
-fn dot_in_parts(x: &[f64], y: &[f64]) -> f64 {
+/// The same in parts, which add up side by side, also of short vectors.
+pub fn dot_in_parts(x: &[f64], y: &[f64]) -> f64 {
     let ((x, x_rest), (y, y_rest)) = (as_arrays::<PARTS>(x), as_arrays::<PARTS>(y));
     let mut sums = [0.0; PARTS];
     for (x, y) in x.iter().zip(y) {

@@ -1,5 +1,6 @@
 //! Dense matrices and their decompositions.
 
+pub mod growing;
 pub mod least_squares;
 pub mod matrix;
 pub mod packed;

@@ -1,9 +1,8 @@
 //! A face: the states of all nodes and the linear model of the laws on it, `L x = ...` for held values, `W'r + D s = ...`
 //! elsewhere, with the coarse spaces G W and G Z.
 
-use std::collections::VecDeque;
-
 use crate::error::Result;
+use crate::linalg::dense::growing::Growing;
 use crate::qp::friction::cones::{direction, length, Cones, Node};
 use crate::qp::friction::coordinates::{Coordinate, Law, EQUATION};
 use crate::qp::friction::motions::{Motions, Turned, CUT};
@@ -148,8 +147,8 @@ pub struct Model {
     /// `(A w^2 A')^+` for A = G W and for A = G Z.
     plain: Turned,
     through: Turned,
-    /// Images of pairs, reduced, as far as they were asked for, and the number of the first pair.
-    pub images: (usize, VecDeque<Vec<f64>>),
+    /// Images of pairs, reduced and made orthonormal, as far as they were asked for, and the number of the first pair.
+    pub images: (usize, Growing),
 }
 
 impl Model {
@@ -176,10 +175,9 @@ impl Model {
 
     /// `[first; P w q]`: the part of a residual that no a can remove, all entries as lengths.
     pub fn reduced(&self, mut residual: Vec<f64>) -> Result<Vec<f64>> {
-        self.turned(&mut residual)?;
-        for (k, q) in residual.iter_mut().enumerate().filter(|(k, _)| self.plain.weights[*k] != 0.0) {
-            *q *= self.plain.weights[k];
-        }
+        let weights = self.plain.weights.iter().map(|w| if *w == 0.0 { 1.0 } else { *w });
+        residual.iter_mut().zip(weights).for_each(|(q, w)| *q *= w);
+        self.plain.project(&mut residual)?;
         Ok(residual)
     }
 

@@ -27,8 +27,9 @@ pub struct Motions<'a> {
 
 /// Rows of A' with their weights, and `(A w^2 A')^+`.
 pub struct Turned {
-    /// m x r
+    /// A' and w A', m x r
     rows: Csr,
+    weighted: Csr,
     pub weights: Vec<f64>,
     inverse: CoarseInverse,
 }
@@ -65,7 +66,7 @@ impl<'a> Motions<'a> {
         let inverse = self.space.inverse(&weighted, self.blocks, &self.nothing_held, cut)?;
         // the blocks are those of these rows
         self.space.by_blocks = None;
-        Ok(Turned { rows, weights, inverse })
+        Ok(Turned { rows, weighted, weights, inverse })
     }
 
     /// `A w^2 A' + shift max diag(G G') I` for A = G Z; none without modes, or if it is not positive definite.
@@ -123,8 +124,15 @@ impl Turned {
 
     /// `A w^2 y`
     pub fn weighted_image(&self, y: &[f64]) -> Vec<f64> {
-        let weighted: Vec<f64> = y.iter().zip(&self.weights).map(|(y, w)| w * w * y).collect();
-        self.rows.mul_transposed(&weighted)
+        let weighted: Vec<f64> = y.iter().zip(&self.weights).map(|(y, w)| w * y).collect();
+        self.weighted.mul_transposed(&weighted)
+    }
+
+    /// `y -= w A'(A w^2 A')^+ A w y`: no motion reduces what is left.
+    pub fn project(&self, y: &mut [f64]) -> Result<()> {
+        let beta = self.solve(&self.weighted.mul_transposed(y))?;
+        y.iter_mut().enumerate().for_each(|(i, y)| *y -= self.weighted.row_dot(i, &beta));
+        Ok(())
     }
 
     /// `A w^2 A' beta`
