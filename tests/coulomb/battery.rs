@@ -261,6 +261,16 @@ fn an_answer_that_passes_is_solved_however_its_method_ended() {
     assert!(end == End::Solved, "{text}");
 }
 
+/// What is left of loads that cancel along the free motion was once a load to the enumeration, which then found no answer.
+#[test]
+fn loads_that_cancel_along_a_free_motion_leave_many_answers() {
+    for seed in [364001884, 372002288] {
+        let drawn = case(seed, &SIZES);
+        let (end, text) = ended(&drawn);
+        assert!(drawn.known == Known::Answer && end == End::Solved, "{seed}: {text}");
+    }
+}
+
 /// One problem in full: BATTERY_SEED, BATTERY_MIXTURE.
 #[test]
 #[ignore]

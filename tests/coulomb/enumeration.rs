@@ -8,6 +8,8 @@ const MOST: usize = 5000;
 /// A pivot of this part of the largest is none; forces and gaps of this part of the largest are none.
 const PIVOT: f64 = 1e-9;
 const NONE: f64 = 1e-8;
+/// What is left of this part of the loads along a motion is rounding.
+const ROUNDING: f64 = 1e-14;
 
 pub struct Enumerated {
     /// Forces of contact rows, tangential rows and equalities of each answer.
@@ -254,7 +256,9 @@ impl Dual {
             }
             for mode in &modes {
                 g.push(rows.iter().map(|row| dot(&row[own.clone()], mode)).collect());
-                e.push(dot(&body.load, mode));
+                let terms: Vec<f64> = body.load.iter().zip(mode).map(|(load, v)| load * v).collect();
+                let (sum, sizes): (f64, f64) = (terms.iter().sum(), terms.iter().map(|v| v.abs()).sum());
+                e.push(if sum.abs() > ROUNDING * sizes { sum } else { 0.0 });
             }
         }
         for i in 0..m {

@@ -18,6 +18,14 @@ struct Column {
     shares: Vec<f64>,
 }
 
+/// A column that is not used yet: its length, and that of what is left of it.
+struct Waiting {
+    number: usize,
+    whole: f64,
+    left: f64,
+    column: Column,
+}
+
 impl Growing {
     pub fn columns(&self) -> usize {
         self.columns
@@ -26,26 +34,27 @@ impl Growing {
     /// Appends columns of one length. Of which most is left, relative to its whole length, is used next, until no more than `cut` is left
     /// of any: those depend on the ones used.
     pub fn extend(&mut self, columns: Vec<Vec<f64>>, cut: f64) {
-        let first = self.columns;
-        self.columns += columns.len();
         let begun = |(k, mut rest): (usize, Vec<f64>)| {
             let whole = length(&rest);
             let shares = self.without(&mut rest);
-            (first + k, whole, Column { rest, shares })
+            Waiting { number: self.columns + k, whole, left: length(&rest), column: Column { rest, shares } }
         };
+        let count = columns.len();
         let mut waiting: Vec<_> = columns.into_iter().enumerate().map(begun).collect();
+        self.columns += count;
         loop {
-            let left = |(_, whole, column): &(usize, f64, Column)| length(&column.rest) / whole;
-            let most = (0..waiting.len()).map(|k| (left(&waiting[k]), k));
+            let parts = waiting.iter().map(|w| w.left / w.whole).enumerate();
             // false for NaN
-            let Some((_, most)) = most.filter(|at| at.0 > cut).max_by(|a, b| a.0.total_cmp(&b.0)) else {
+            let Some((most, _)) = parts.filter(|part| part.1 > cut).max_by(|a, b| a.1.total_cmp(&b.1)) else {
                 break;
             };
-            let (number, _, mut next) = waiting.swap_remove(most);
-            let left = length(&next.rest);
+            let Waiting { number, left, column: mut next, .. } = waiting.swap_remove(most);
             next.rest.iter_mut().for_each(|v| *v /= left);
             next.shares.push(left);
-            waiting.iter_mut().for_each(|(.., other)| other.shares.push(take(&next.rest, &mut other.rest)));
+            for Waiting { left, column: other, .. } in &mut waiting {
+                other.shares.push(take(&next.rest, &mut other.rest));
+                *left = length(&other.rest);
+            }
             self.used.push((number, next));
         }
     }
@@ -120,7 +129,7 @@ mod tests {
         assert!(b.iter().all(|b| b.abs() < 1e-14));
     }
 
-    /// The second depends on the first up to 1e-13, the third and fourth on nothing; then a longer column.
+    /// The second depends on the first up to 1e-13, the next ones are not numbers, infinite and nothing; then a longer column.
     #[test]
     fn a_column_that_depends_on_others_is_not_used_and_later_ones_may_be_longer() {
         let mut growing = Growing::default();
