@@ -1,5 +1,6 @@
 //! Which part of a displacement is deformation: everything except the rigid motions that the rows leave free.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::certificate::field::Field;
@@ -40,20 +41,32 @@ impl Deformation {
 /// into the ground by a row of its own deforms nothing.
 fn own(field: &Field) -> Result<Vec<f64>> {
     let mut own = without_motions(field)?;
-    let mut push = field.push.clone();
+    let passed_on = passed_on(field);
+    for j in (0..own.len()).filter(|j| field.grounded[*j] || field.carried[*j]) {
+        let push = passed_on.get(&j).unwrap_or(&field.push[j]);
+        own[j] = (push.abs() / field.unit / field.metric[j]).min(field.answer.u[j].abs());
+    }
+    Ok(own)
+}
+
+/// The forces of rows on carried unknowns that have rows of their own, without the forces of those.
+fn passed_on(field: &Field) -> BTreeMap<usize, f64> {
+    let mut left = BTreeMap::new();
+    if !field.carried.contains(&true) {
+        return left;
+    }
     for kind in RowKind::ALL {
         let (rows, forces) = (field.rows(kind), field.answer.forces(kind));
         for i in (0..rows.len()).filter(|i| forces[*i] != 0.0) {
             let mut entries = rows.matrix.row(i);
             if let (Some((j, b)), None) = (entries.next(), entries.next()) {
-                push[j] -= if field.carried[j] { b * forces[i] } else { 0.0 };
+                if field.carried[j] {
+                    *left.entry(j).or_insert(field.push[j]) -= b * forces[i];
+                }
             }
         }
     }
-    for j in (0..own.len()).filter(|j| field.grounded[*j] || field.carried[*j]) {
-        own[j] = (push[j].abs() / field.unit / field.metric[j]).min(field.answer.u[j].abs());
-    }
-    Ok(own)
+    left
 }
 
 /// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, since a single unknown may be at rest by symmetry, and for carried unknowns the
