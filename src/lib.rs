@@ -50,7 +50,7 @@
 //! }
 //! ```
 //!
-//! The C interface wraps [`solver::Problem`]. For C, Fortran and FORTRAN 77 see README.md.
+//! The C interface, the crate feti-contact-c, wraps [`solver::Problem`]. For C, Fortran and FORTRAN 77 see README.md.
 //!
 //! | module | contents |
 //! |---|---|
@@ -66,7 +66,6 @@
 //! | `setup` | data computed once from the model, for any load and gap |
 //! | `solve` | presolve, methods, recovery, diagnosis: the answer |
 //! | [`solver`] | the problem of a host, which owns one of each |
-//! | [`ffi`] | the C interface |
 
 pub mod body;
 pub mod certificate;
@@ -74,7 +73,6 @@ pub mod constraints;
 mod decomposition;
 pub mod dual;
 pub mod error;
-pub mod ffi;
 pub mod linalg;
 mod mesh;
 mod model;

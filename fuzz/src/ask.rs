@@ -1,6 +1,6 @@
 //! The calls that set up, solve, and read what is there.
 
-use feti_contact::ffi::*;
+use feti_contact_c::*;
 
 use super::buffers::{Cell, Out, Written};
 use super::give::pick;

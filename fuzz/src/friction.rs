@@ -1,6 +1,6 @@
 //! Nodes with friction: given, changed, committed, read.
 
-use feti_contact::ffi::*;
+use feti_contact_c::*;
 
 use super::buffers::Out;
 use super::give::{narrow, pick, spoil_indices};

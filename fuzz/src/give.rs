@@ -2,7 +2,7 @@
 
 use std::ffi::{c_char, c_void, CString};
 
-use feti_contact::ffi::*;
+use feti_contact_c::*;
 
 use super::buffers::Out;
 use super::host::{Host, KINDS, LARGEST};

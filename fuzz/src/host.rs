@@ -1,6 +1,6 @@
 //! A host that hands over right arguments, or spoils one of a call; and what it checks after every call.
 
-use feti_contact::ffi::*;
+use feti_contact_c::*;
 
 use super::buffers::{Cell, Digest, Out, Written};
 use super::bytes::Bytes;

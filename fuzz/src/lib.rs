@@ -1,5 +1,5 @@
 //! The targets of the fuzzer: each reads decisions from bytes, drives the C ABI by them, and panics where the library
-//! breaks its word. Called by libFuzzer (`targets/`) and by the short run of `make test` (`tests/fuzz/`).
+//! breaks its word. Called by libFuzzer (`targets/`) and by the short run of `make test` (`tests/c/fuzz.rs`).
 //!
 //! | file | holds |
 //! |---|---|

@@ -2,7 +2,7 @@
 
 use std::ffi::c_void;
 
-use feti_contact::ffi::*;
+use feti_contact_c::*;
 
 use super::give::{narrow, spoil_indices};
 use super::host::{Host, Lent};

@@ -2,7 +2,7 @@
 
 use std::ffi::CString;
 
-use feti_contact::ffi::*;
+use feti_contact_c::*;
 
 use super::buffers::{Out, Written};
 use super::bytes::Bytes;

@@ -2,7 +2,7 @@
 
 use std::ffi::{c_char, c_void, CStr};
 
-use feti_contact::ffi::*;
+use feti_contact_c::*;
 
 use super::ask::sized;
 use super::buffers::Out;

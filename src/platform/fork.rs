@@ -5,11 +5,11 @@
 //! anything longer, such as a call on a problem: in the child that problem stays busy.
 
 #[cfg(target_os = "linux")]
-pub(crate) use watched::instant;
+pub use watched::instant;
 
 /// Runs `work`, which takes locks that all threads share.
 #[cfg(not(target_os = "linux"))]
-pub(crate) fn instant<T>(work: impl FnOnce() -> T) -> T {
+pub fn instant<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
@@ -30,7 +30,7 @@ mod watched {
     }
 
     /// Runs `work`, which takes locks that all threads share.
-    pub(crate) fn instant<T>(work: impl FnOnce() -> T) -> T {
+    pub fn instant<T>(work: impl FnOnce() -> T) -> T {
         hear_of_forks();
         let _goes_on = INSTANTS.read().unwrap_or_else(PoisonError::into_inner);
         work()

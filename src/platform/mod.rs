@@ -12,5 +12,5 @@ mod sync;
 pub mod tally;
 pub mod threads;
 
-pub(crate) use fork::instant;
+pub use fork::instant;
 pub use interrupt::Interrupt;

@@ -1,6 +1,6 @@
-# Every function of the header, called rightly and wrongly; the programs are generated from src/ffi whenever it changes.
+# Every function of the header, called rightly and wrongly; the programs are generated from c/src whenever it changes.
 find_program(CARGO cargo REQUIRED)
-file(GLOB_RECURSE generator_reads CONFIGURE_DEPENDS "${PROJECT_ROOT}/src/ffi/*.rs" "${PROJECT_ROOT}/tools/bindgen/src/*.rs")
+file(GLOB_RECURSE generator_reads CONFIGURE_DEPENDS "${PROJECT_ROOT}/c/src/*.rs" "${PROJECT_ROOT}/tools/bindgen/src/*.rs")
 set(calls "${CMAKE_CURRENT_BINARY_DIR}/generated/calls.c")
 set(trace "${CMAKE_CURRENT_BINARY_DIR}/generated/trace.c")
 set(bindgen "${CARGO}" run --quiet --release --locked -p feti-bindgen --)

@@ -83,7 +83,8 @@ fn named(file: &str, code: &str, own_uses: bool) -> impl Iterator<Item = Vec<Str
     let tests = test_ranges(code);
     let of_use: Vec<_> = words(code, "use").map(|at| at..end_of_use(code, at)).collect();
     let outside = move |named: &Named| {
-        !tests.iter().any(|range| range.contains(&named.at))
+        !named.of_library
+            && !tests.iter().any(|range| range.contains(&named.at))
             && (own_uses || !of_use.iter().any(|range| range.contains(&named.at)))
     };
     paths(file, code).into_iter().filter(outside).map(|named| named.path)

@@ -1,9 +1,11 @@
 //! The arrows between the layers, and what no source of the library may contain:
 //!
 //! ```text
-//! error <- platform <- linalg <- mesh, body, constraints <- dual, certificate <- model <- setup <- solve <- solver <- ffi
+//! error <- platform <- linalg <- mesh, body, constraints <- dual, certificate <- model <- setup <- solve <- solver <- c
 //!                      linalg <- qp <- progress <- setup
 //! ```
+//!
+//! Layers are the folders of src; c is a crate of its own.
 //!
 //! No modules of one folder import each other in a circle; faer is known to linalg only; nothing prints; nothing panics but the
 //! fault a host may ask for; no file is longer than 400 lines.
@@ -81,7 +83,7 @@ const ALLOWED: [(&str, &[&str]); 16] = [
             "solve",
         ],
     ),
-    ("ffi", &["error", "platform", "solver"]),
+    ("c", &["error", "platform", "solver"]),
 ];
 
 const FORBIDDEN: [&str; 11] = [
@@ -99,18 +101,23 @@ const FORBIDDEN: [&str; 11] = [
 ];
 
 /// The one panic outside the tests: the option `fault_injection`.
-const INJECTED: (&str, &str) = ("ffi/solve.rs", "panic!");
+const INJECTED: (&str, &str) = ("c/src/solve.rs", "panic!");
 
 const LONGEST: usize = 400;
 
-/// All faults of one source; `path` is relative to src.
+/// Where the crates have their sources.
+const CRATES: [&str; 2] = ["src", "c/src"];
+
+/// All faults of one source.
 fn faults(path: &str, text: &str) -> Vec<String> {
     let code = without_text(text);
     let mut found = Vec::new();
-    let mut report =
-        |at: usize, what: String| found.push(format!("src/{path}:{}: {what}", line_of(&code, at)));
+    let mut report = |at: usize, what: String| found.push(format!("{path}:{}: {what}", line_of(&code, at)));
     let layer = layer_of(path);
-    for Named { at, through_super, path } in paths(path, &code) {
+    let is_crate = !path.starts_with("src/");
+    for Named { at, through_super, path, .. } in
+        paths(path, &code).into_iter().filter(|n| n.of_library == is_crate)
+    {
         let named = path.first().map_or("*", String::as_str);
         if !may_name(layer, named) {
             report(
@@ -133,15 +140,16 @@ fn faults(path: &str, text: &str) -> Vec<String> {
     }
     let lines = text.lines().count();
     if lines > LONGEST {
-        found.push(format!("src/{path}:{lines}: longer than {LONGEST} lines"));
+        found.push(format!("{path}:{lines}: longer than {LONGEST} lines"));
     }
     // names of one list in braces
     found.dedup();
     found
 }
 
-/// `ffi/solve.rs` -> `ffi`, `error.rs` -> `error`.
+/// `src/qp/face.rs` -> `qp`, `src/error.rs` -> `error`, `c/src/solve.rs` -> `c`.
 fn layer_of(path: &str) -> &str {
+    let path = path.strip_prefix("src/").unwrap_or(path);
     path.split('/').next().unwrap_or(path).trim_end_matches(".rs")
 }
 
@@ -166,19 +174,20 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// All sources by their path below src, and those that exist in tests only.
-fn library() -> (Vec<(String, String)>, BTreeSet<String>) {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+/// All sources of a crate by their path, and those that exist in tests only.
+fn crate_in(folder: &str) -> (Vec<(String, String)>, BTreeSet<String>) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (mut all, mut only_tests) = (Vec::new(), BTreeSet::new());
-    for file in sources(&root) {
-        let path = file.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/");
+    for file in sources(&root.join(folder)) {
+        let path = file.strip_prefix(root).unwrap().to_str().unwrap().replace('\\', "/");
         let text = fs::read_to_string(&file).unwrap();
-        let folder = path.strip_suffix("/mod.rs").or_else(|| path.strip_suffix(".rs")).unwrap_or(&path);
+        let folder =
+            ["/mod.rs", "/lib.rs", ".rs"].iter().find_map(|end| path.strip_suffix(end)).unwrap_or(&path);
         only_tests
             .extend(test_modules(&without_text(&text)).iter().map(|name| format!("{folder}/{name}.rs")));
         all.push((path, text));
     }
-    assert!(all.len() > 30, "only {} sources were found", all.len());
+    assert!(all.len() > 20, "only {} sources were found", all.len());
     // whatever lies below a module of tests is one
     let is_test = |path: &str| {
         path.match_indices('/').any(|(at, _)| only_tests.contains(&format!("{}.rs", &path[..at])))
@@ -190,9 +199,11 @@ fn library() -> (Vec<(String, String)>, BTreeSet<String>) {
 
 #[test]
 fn the_sources_keep_to_their_layers() {
-    let (all, tests) = library();
-    let exempt = |path: &String, fault: &String| tests.contains(path) && fault.ends_with("outside the tests");
-    let found: Vec<String> = (all.iter().filter(|(path, _)| path != "lib.rs"))
+    let (all, tests): (Vec<_>, Vec<_>) = CRATES.map(crate_in).into_iter().unzip();
+    let exempt = |path: &String, fault: &String| {
+        tests.iter().any(|tests| tests.contains(path)) && fault.ends_with("outside the tests")
+    };
+    let found: Vec<String> = (all.concat().iter().filter(|(path, _)| path != "src/lib.rs"))
         .flat_map(|(path, text)| faults(path, text).into_iter().filter(|fault| !exempt(path, fault)))
         .collect();
     assert!(found.is_empty(), "{}", found.join("\n"));
@@ -200,10 +211,12 @@ fn the_sources_keep_to_their_layers() {
 
 #[test]
 fn no_modules_of_a_folder_import_each_other_in_a_circle() {
-    let (all, tests) = library();
-    let all = all.into_iter().filter(|(path, _)| !tests.contains(path));
-    let all: Vec<_> = all.map(|(path, text)| (path, without_text(&text))).collect();
-    assert_eq!(circles::circles(&all), [""; 0]);
+    for folder in CRATES {
+        let (all, tests) = crate_in(folder);
+        let all = all.into_iter().filter(|(path, _)| !tests.contains(path));
+        let all: Vec<_> = all.map(|(path, text)| (path, without_text(&text))).collect();
+        assert_eq!(circles::circles(&all), [""; 0], "{folder}");
+    }
 }
 
 /// docs/pictures/layers.svg has each layer by its name, at a height.
@@ -227,44 +240,54 @@ fn the_picture_shows_every_layer_above_those_that_it_uses() {
 #[test]
 fn an_upward_or_sideways_import_is_named_with_its_line() {
     let upward = "//! crate::solver in a comment\nuse crate::error::Result;\nuse crate::solver::Problem;\n";
-    assert_eq!(faults("qp/steps.rs", upward), ["src/qp/steps.rs:3: qp must not use crate::solver"]);
+    assert_eq!(faults("src/qp/steps.rs", upward), ["src/qp/steps.rs:3: qp must not use crate::solver"]);
     let list = "use crate::{\n    error::{Error, Kind},\n    linalg::Csr,\n    constraints,\n};\n";
-    assert_eq!(faults("body/mod.rs", list), ["src/body/mod.rs:1: body must not use crate::constraints"]);
+    assert_eq!(faults("src/body/mod.rs", list), ["src/body/mod.rs:1: body must not use crate::constraints"]);
     let inline = "fn f() {\n    let x = crate :: dual::Dual::new();\n}\n";
-    assert_eq!(faults("ffi/solve.rs", inline), ["src/ffi/solve.rs:2: ffi must not use crate::dual"]);
-    assert_eq!(faults("error.rs", "use crate::*;"), ["src/error.rs:1: error must not use crate::*"]);
-    assert!(faults("solver/solve.rs", "use crate::{qp, dual::Dual};").is_empty());
-    assert!(
-        faults("qp/mod.rs", "/* crate::ffi /* nested */ */ const A: &str = r#\"crate::ffi\"#;").is_empty()
+    assert_eq!(
+        faults("src/certificate/entry.rs", inline),
+        ["src/certificate/entry.rs:2: certificate must not use crate::dual"]
     );
+    let of_c = "use crate::boundary::call;\nuse feti_contact::{solver::Problem, dual};\n";
+    assert_eq!(faults("c/src/solve.rs", of_c), ["c/src/solve.rs:2: c must not use crate::dual"]);
+    assert_eq!(faults("src/error.rs", "use crate::*;"), ["src/error.rs:1: error must not use crate::*"]);
+    assert!(faults("src/solver/solve.rs", "use crate::{qp, dual::Dual};").is_empty());
+    assert!(faults(
+        "src/qp/mod.rs",
+        "/* crate::solver /* nested */ */ const A: &str = r#\"crate::solver\"#;"
+    )
+    .is_empty());
 }
 
 #[test]
 fn a_way_around_through_super_is_seen() {
     let around = ["src/qp/steps.rs:1: qp must not use dual, reached through super"];
-    assert_eq!(faults("qp/steps.rs", "use super::super::dual::Dual;"), around);
-    assert!(faults("qp/steps.rs", "use super::dual;").is_empty(), "a module qp::dual");
-    assert_eq!(faults("qp/mod.rs", "use super::{body, linalg};").len(), 1);
-    assert!(faults("qp/mod.rs", "mod tests {\n    use super::body;\n}").is_empty(), "a module qp::body");
-    assert_eq!(faults("qp/mod.rs", "mod tests {\n    use super::super::body;\n}").len(), 1);
+    assert_eq!(faults("src/qp/steps.rs", "use super::super::dual::Dual;"), around);
+    assert!(faults("src/qp/steps.rs", "use super::dual;").is_empty(), "a module qp::dual");
+    assert_eq!(faults("src/qp/mod.rs", "use super::{body, linalg};").len(), 1);
+    assert!(faults("src/qp/mod.rs", "mod tests {\n    use super::body;\n}").is_empty(), "a module qp::body");
+    assert_eq!(faults("src/qp/mod.rs", "mod tests {\n    use super::super::body;\n}").len(), 1);
 }
 
 #[test]
 fn faer_prints_panics_and_long_files_are_seen() {
-    assert_eq!(faults("body/mod.rs", "use faer::Mat;"), ["src/body/mod.rs:1: faer outside linalg"]);
-    assert!(faults("linalg/dense/pivoted.rs", "use faer::Mat;").is_empty());
-    assert!(faults("body/mod.rs", "fn f() {} // faer").is_empty());
+    assert_eq!(faults("src/body/mod.rs", "use faer::Mat;"), ["src/body/mod.rs:1: faer outside linalg"]);
+    assert!(faults("src/linalg/dense/pivoted.rs", "use faer::Mat;").is_empty());
+    assert!(faults("src/body/mod.rs", "fn f() {} // faer").is_empty());
     for call in FORBIDDEN {
         let line = format!("fn f<'a>(x: &'a str) {{ let c = '\"'; {call}); }}\n");
-        assert_eq!(faults("dual/mod.rs", &line), [format!("src/dual/mod.rs:1: {call} outside the tests")]);
+        assert_eq!(
+            faults("src/dual/mod.rs", &line),
+            [format!("src/dual/mod.rs:1: {call} outside the tests")]
+        );
         let tested = format!("fn f() {{}}\n#[cfg(test)]\nmod tests {{ fn g() {{ {call}); }} }}\n");
-        assert!(faults("dual/mod.rs", &tested).is_empty(), "{call}");
-        assert_eq!(faults("dual/mod.rs", &format!("{tested}fn h() {{ {call}); }}")).len(), 1, "{call}");
+        assert!(faults("src/dual/mod.rs", &tested).is_empty(), "{call}");
+        assert_eq!(faults("src/dual/mod.rs", &format!("{tested}fn h() {{ {call}); }}")).len(), 1, "{call}");
     }
     let fault = "fn f() { panic!(\"on request\"); }";
-    assert!(faults("ffi/solve.rs", fault).is_empty());
-    assert_eq!(faults("ffi/solve.rs", &format!("{fault}\n{fault}")).len(), 1);
-    assert_eq!(faults("ffi/rows.rs", fault).len(), 1);
-    assert!(faults("qp/mod.rs", &"\n".repeat(400)).is_empty());
-    assert_eq!(faults("qp/mod.rs", &"\n".repeat(401)).len(), 1);
+    assert!(faults("c/src/solve.rs", fault).is_empty());
+    assert_eq!(faults("c/src/solve.rs", &format!("{fault}\n{fault}")).len(), 1);
+    assert_eq!(faults("c/src/rows.rs", fault).len(), 1);
+    assert!(faults("src/qp/mod.rs", &"\n".repeat(400)).is_empty());
+    assert_eq!(faults("src/qp/mod.rs", &"\n".repeat(401)).len(), 1);
 }

@@ -21,33 +21,43 @@ pub fn words<'a>(code: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 
     occurrences(code, word).filter(ends)
 }
 
-/// A path that starts with crate, self or super.
+/// A path that starts with crate, self, super or, in another crate, the name of the library.
 pub struct Named {
     pub at: usize,
     pub through_super: bool,
+    pub of_library: bool,
     /// From the root.
     pub path: Vec<String>,
 }
 
-/// All paths of `use` declarations and expressions that start with crate, self or super, those in braces one by one.
+/// The crate on which those in other folders stand.
+const LIBRARY: &str = "feti_contact";
+
+/// All paths of `use` declarations and expressions that start as [`Named`] says, those in braces one by one.
 pub fn paths(file: &str, code: &str) -> Vec<Named> {
-    let starts = ["crate", "self", "super"].into_iter().flat_map(|word| {
+    let starts = ["crate", "self", "super", LIBRARY].into_iter().flat_map(|word| {
         let first = move |at: &usize| {
             !code[..*at].trim_end().ends_with("::") && code[at + word.len()..].trim_start().starts_with("::")
         };
-        words(code, word).filter(first).map(move |at| (at, word == "super"))
+        words(code, word).filter(first).map(move |at| (at, word))
     });
-    let from = |(at, through_super): (usize, bool)| {
+    let from = |(at, word): (usize, &str)| {
         let module = module_at(file, code, at);
+        let (through_super, of_library) = (word == "super", word == LIBRARY);
         let paths = expanded(&code[at..], Renamed::AsItWas).into_iter();
-        paths.filter_map(move |path| Some(Named { at, through_super, path: absolute(path, &module)? }))
+        let named = move |path| {
+            let path = absolute(path, &module)?;
+            Some(Named { at, through_super, of_library, path })
+        };
+        paths.filter_map(named)
     };
     starts.flat_map(from).collect()
 }
 
-/// `solver/file/mod.rs` -> [solver, file]; `lib.rs` -> [].
+/// `src/solver/file/mod.rs` -> [solver, file]; `c/src/lib.rs` -> [].
 pub fn module_of(file: &str) -> Vec<String> {
-    let file = file.trim_end_matches(".rs").trim_end_matches("/mod");
+    let file = file.split_once("src/").map_or(file, |(_, file)| file).trim_end_matches(".rs");
+    let file = file.trim_end_matches("/mod");
     file.split('/').filter(|name| *name != "lib").map(str::to_owned).collect()
 }
 
@@ -118,12 +128,12 @@ fn split(list: &str) -> Vec<&str> {
 /// The path from the root; none through `super` beyond it.
 fn absolute(path: Vec<String>, module: &[String]) -> Option<Vec<String>> {
     let mut base = match path.first()?.as_str() {
-        "crate" => Vec::new(),
+        "crate" | LIBRARY => Vec::new(),
         _ => module.to_vec(),
     };
     for name in path {
         match name.as_str() {
-            "crate" | "self" => {}
+            "crate" | "self" | LIBRARY => {}
             "super" => drop(base.pop()?),
             _ => base.push(name),
         }

@@ -1,9 +1,9 @@
 #!/bin/sh
-# assets.sh ROOT WORK: what Cargo.toml has cargo-c install below share is what make install puts there.
+# assets.sh ROOT WORK: what c/Cargo.toml has cargo-c install below share is what make install puts there.
 set -eu
 cd "$1"
 mkdir -p "$2"
-sed -n 's/^ *{ from = "\([^"]*\)", to = "\([^"]*\)" },$/\1 \2/p' Cargo.toml | while read -r from to; do
+sed -n 's/^ *{ from = "\.\.\/\([^"]*\)", to = "\([^"]*\)" },$/\1 \2/p' c/Cargo.toml | while read -r from to; do
     for file in $from; do [ ! -f "$file" ] || echo "/usr/share/$to/${file##*/}"; done
 done | sort >"$2/cargo.files"
 env PREFIX=/usr DESTDIR= LIBDIR= INCLUDEDIR= DATADIR= DOCDIR= MANDIR= RELEASE=. tools/install.sh list |

@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 build=$1 ctest=$2
 programs=$(tools/fuzz/build.sh)
-library=$programs/deps/libfeti_contact.so runtime=$build/libasan_runtime.so
+library=$programs/libfeti_contact.so runtime=$build/libasan_runtime.so
 mkdir -p "$build"
 
 # The runtime comes as an archive for executables; what such a one runs before all else has no place in a library.

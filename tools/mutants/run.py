@@ -26,6 +26,8 @@ ROOT = Path(__file__).resolve().parents[2]
 LIST = Path(__file__).with_name("list.txt")
 WORK = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve() / "mutants"
 GOAL = 0.9
+SOURCES = ["src", "c/src"]
+PACKAGES = ["feti-contact", "feti-contact-c", "feti-contact-c-rlib"]
 # Programs that see the sources, not the library, or build their own.
 LEFT_OUT = {"layering", "licences", "cholmod"}
 # Sizes of the long tests, where nothing else is asked for; one thread for each change that runs.
@@ -106,7 +108,7 @@ def find(sources, number, before, old, after):
 
 def edits(changes):
     """What to write into every file: (start, end, text), and the places for who wants to read them."""
-    texts = {path: path.read_text() for path in sorted((ROOT / "src").rglob("*.rs"))}
+    texts = {path: path.read_text() for folder in SOURCES for path in sorted((ROOT / folder).rglob("*.rs"))}
     sources = {path: dense(text) for path, text in texts.items()}
     at, faults = {}, []
     for change in changes:
@@ -122,15 +124,15 @@ def edits(changes):
     return texts, at
 
 
-def switched(text, places):
-    """The text with a switch at every place."""
+def switched(text, places, of):
+    """The text with a switch at every place; `of`: the crate that has the switch, as the text names it."""
     places = sorted(places)
     for (_, end, number, _), (start, *_) in zip(places, places[1:]):
         if start < end:
             raise Misfit(f"the place of change {number} and the next one lie in each other")
     for start, end, number, new in reversed(places):
         old = text[start:end]
-        switch = f"if crate::mutant({number}) {{ {new} }} else {{ {old} }}"
+        switch = f"if {of}::mutant({number}) {{ {new} }} else {{ {old} }}"
         text = text[:start] + (switch if old.endswith(";") else f"({switch})") + text[end:]
     return text
 
@@ -138,7 +140,9 @@ def switched(text, places):
 def copy_tree(changes):
     """The files of the working tree that git knows or does not ignore, with the switches; what has not changed is left."""
     texts, at = edits(changes)
-    new = {path: switched(text, at.get(path, [])) for path, text in texts.items()}
+    library = ROOT / "src"
+    of = {path: "crate" if library in path.parents else "feti_contact" for path in texts}
+    new = {path: switched(text, at.get(path, []), of[path]) for path, text in texts.items()}
     new[ROOT / "src/lib.rs"] += SWITCH
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True)
     kept = set()
@@ -160,6 +164,7 @@ def copy_tree(changes):
 def build():
     """The test programs, by name."""
     command = [os.environ.get("CARGO", "cargo"), "test", "--release", "--locked", "--quiet", "--lib", "--tests", "--no-run"]
+    command += [word for package in PACKAGES for word in ("-p", package)]
     environment = {**os.environ, "CARGO_TARGET_DIR": str(WORK / "build")}
     done = subprocess.run([*command, "--message-format=json"], cwd=WORK / "tree", env=environment, stdout=subprocess.PIPE)
     messages = [json.loads(line) for line in done.stdout.splitlines() if line.startswith(b"{")]
@@ -167,7 +172,9 @@ def build():
         shown = [m["message"]["rendered"] for m in messages if m.get("message", {}).get("level") == "error"]
         raise Misfit("the copy does not build:\n" + "\n".join(shown[:10]))
     made = [m for m in messages if m.get("executable") and m["profile"]["test"]]
-    return {m["target"]["name"]: m["executable"] for m in made if m["target"]["name"] not in LEFT_OUT}
+    # the unit tests of library and C interface have one name
+    name = {id(m): m["target"]["name"] + " of C" * m["manifest_path"].endswith("c/Cargo.toml") for m in made}
+    return {name[id(m)]: m["executable"] for m in made if m["target"]["name"] not in LEFT_OUT}
 
 
 def run(program, number, limit):

@@ -5,7 +5,7 @@
 
 #[path = "../../../src/platform/pools.rs"]
 mod pools;
-#[path = "../../../src/ffi/boundary/registry.rs"]
+#[path = "../../../c/src/boundary/registry.rs"]
 mod registry;
 
 mod sync {

@@ -1,9 +1,9 @@
-//! Writes `include/feti_contact.h` and `include/fortran/feti_contact_c.f90` from one parse of `src/ffi`.
+//! Writes `include/feti_contact.h` and `include/fortran/feti_contact_c.f90` from one parse of `c/src`.
 //!
 //! `feti-bindgen [--check] [--calls FILE] [--trace FILE] [--pages DIR] [--source DIR] [--root DIR]`; `--check` writes nothing and fails on the first line
 //! that differs from the committed files. `--calls FILE` writes a C program for the tests instead ([`calls`]), as does `--trace` ([`trace`]);
 //! `--pages DIR` writes reference pages there ([`pages`], with the calls of FORTRAN 77, [`f77`]) and manual pages below DIR/man ([`man`]).
-//! `--root` is the folder of the library's Cargo.toml, `--source` defaults to its src/ffi.
+//! `--root` is the folder of the library's Cargo.toml, `--source` defaults to its c/src.
 //!
 //! All of them have the order of the job ([`order`]).
 //!
@@ -75,7 +75,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, Strin
             }
         }
     }
-    let source = source.unwrap_or_else(|| root.join("src/ffi"));
+    let source = source.unwrap_or_else(|| root.join("c/src"));
     Ok(Options { check, calls, trace, pages, root, source })
 }
 
@@ -177,9 +177,9 @@ fn read(path: &Path) -> Result<String, String> {
     fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// `version = "major.minor.patch"` of the section [package].
+/// `version = "major.minor.patch"` of the section [workspace.package].
 fn package_version(manifest: &str) -> Option<[u32; 3]> {
-    let package = manifest.lines().skip_while(|line| line.trim() != "[package]").skip(1);
+    let package = manifest.lines().skip_while(|line| line.trim() != "[workspace.package]").skip(1);
     let mut lines = package.take_while(|line| !line.starts_with('['));
     let value = lines.find_map(|line| line.strip_prefix("version")?.trim().strip_prefix('='))?;
     let numbers = value.trim().trim_matches('"').split('-').next()?.split('.').map(str::parse);

@@ -63,7 +63,7 @@ fn page(api: &Api, faces: &Faces, function: &Function) -> String {
     for paragraph in &after {
         let _ = write!(out, "\n{}\n", paragraph.replacen("Safety:", "**Safety.**", 1));
     }
-    let _ = write!(out, "\nSource: `src/ffi/{}`\n", function.source);
+    let _ = write!(out, "\nSource: `c/src/{}`\n", function.source);
     out
 }
 
@@ -242,7 +242,7 @@ mod tests {
             "| `FETI_STATE` | Before. |",
             "| `FETI_ARGUMENT - k` |",
             "**Safety.** Given.",
-            "Source: `src/ffi/rows.rs`",
+            "Source: `c/src/rows.rs`",
         ] {
             assert!(page.contains(line), "no `{line}` in\n{page}");
         }

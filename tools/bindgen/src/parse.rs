@@ -5,7 +5,7 @@ use quote::ToTokens;
 use crate::doc::{Direction, Doc};
 use crate::model::{Api, Argument, Callback, Constant, Field, Function, Struct, Type};
 
-/// `sources`: (path from src/ffi, text), in the order in which the items are printed.
+/// `sources`: (path from c/src, text), in the order in which the items are printed.
 pub fn parse(sources: &[(String, String)], version: [u32; 3]) -> Result<Api, String> {
     let mut api = Api { version, ..Api::default() };
     for (name, text) in sources {

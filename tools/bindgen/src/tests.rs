@@ -206,7 +206,8 @@ fn constants_and_version_come_out_in_both_languages() {
         module.contains("FETI_ARGUMENT = -100_c_int32_t")
             && module.contains("FETI_CONTACT_VERSION_PATCH = 3_c")
     );
-    let manifest = "[package]\nname = \"x\"\nversion = \"10.2.3\"\n[dependencies]\nversion = \"9.9.9\"\n";
+    let manifest =
+        "[workspace.package]\nname = \"x\"\nversion = \"10.2.3\"\n[dependencies]\nversion = \"9.9.9\"\n";
     assert_eq!(package_version(manifest), Some([10, 2, 3]));
     assert_eq!(package_version("[package]\nname = \"x\"\n[dependencies]\nversion = \"9.9.9\"\n"), None);
 }
@@ -232,9 +233,9 @@ fn drift_is_named_by_file_and_line() {
 #[test]
 fn check_passes_after_writing_and_fails_after_an_edit() {
     let root = std::env::temp_dir().join(format!("feti_bindgen_root_{}", std::process::id()));
-    let source = root.join("src/ffi");
+    let source = root.join("c/src");
     std::fs::create_dir_all(&source).unwrap();
-    std::fs::write(root.join("Cargo.toml"), "[package]\nversion = \"0.1.0\"\n").unwrap();
+    std::fs::write(root.join("Cargo.toml"), "[workspace.package]\nversion = \"0.1.0\"\n").unwrap();
     std::fs::write(source.join("a.rs"), with_argument("i32", "in", "scalar", "")).unwrap();
     let call = |check: &[&str]| {
         let root = ["--root", root.to_str().unwrap()];

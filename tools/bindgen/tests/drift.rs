@@ -1,4 +1,4 @@
-//! The committed header and Fortran interfaces are what src/ffi gives.
+//! The committed header and Fortran interfaces are what c/src gives.
 
 use std::process::Command;
 

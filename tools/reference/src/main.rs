@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use feti_contact::ffi::{
+use feti_contact_c::{
     feti_option, feti_option_at, feti_option_count, feti_status_name, feti_status_text, FETI_ARGUMENT,
     FETI_OK, FETI_OPTION_F64, FETI_OPTION_I64,
 };

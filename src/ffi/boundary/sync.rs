@@ -1,5 +1,0 @@
-//! The synchronisation types of [`super::registry`]; `tests/loom` replaces them by loom's.
-
-pub(super) use crate::platform::instant;
-pub(super) use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-pub(super) use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, TryLockError};
