@@ -82,3 +82,7 @@ pub mod qp;
 mod setup;
 mod solve;
 pub mod solver;
+
+// The sources of crate paper, among the unit tests, know this library by its name.
+#[cfg(test)]
+extern crate self as feti_contact;

@@ -35,7 +35,9 @@ pub unsafe extern "C" fn feti_problem_create(p: *mut *mut feti_problem) -> i32 {
         return FETI_MEMORY;
     }
     without_problem(call, || {
-        let handle = handle::register(Problem::new())?;
+        let mut problem = Problem::new();
+        problem.offer_method(&paper::Paper);
+        let handle = handle::register(problem)?;
         // SAFETY: the caller gives room for a pointer.
         unsafe { p.write_unaligned(handle) };
         Ok(())

@@ -15,7 +15,6 @@ pub mod friction;
 mod gradient;
 mod interior;
 mod nearest;
-pub mod paper;
 mod projection;
 mod proportioning;
 mod restricted;
@@ -26,9 +25,10 @@ pub use acceptance::{
     AcceptanceTest, Effort, Limits, Mended, Observer, Solution, StepKind, StepReport, Verdict,
 };
 pub use between_solves::BetweenSolves;
-pub use coarse::AnswerFace;
+pub use coarse::{AnswerFace, Coarse};
 pub use conjugate::MOST as KEPT;
 pub use face::{Direct, Face};
+pub use gradient::{at_bound, feasible_step, Split};
 pub use interior::{Interior, Inverse, Point, Stiffness};
 pub use nearest::{nearest_point, Nearest, Polyhedron};
 pub use proportioning::minimise;

@@ -7,6 +7,7 @@ use crate::linalg::vector::norm_max;
 use crate::model::Model;
 use crate::platform::memory::zeros;
 use crate::setup::{Island, Prepared, Ready};
+use crate::solve::method::DualMethod;
 
 /// All inputs for the solution of one island: the data of the host and the results of setup.
 #[derive(Clone, Copy)]
@@ -14,6 +15,8 @@ pub struct Case<'a> {
     pub model: &'a Model,
     pub prepared: &'a Prepared,
     pub ready: &'a Ready,
+    /// The method for option `method` other than `proportioning`.
+    pub method: Option<&'a dyn DualMethod>,
 }
 
 impl<'a> Case<'a> {

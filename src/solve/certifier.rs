@@ -235,7 +235,7 @@ pub(super) mod tests {
             (Prepared::default(), Host::default().watch(1e300, Phases::default()));
         prepared.set_up(model, &mut watch).unwrap();
         let ready = &prepared.done(model).unwrap().islands[0];
-        let case = Case { model, prepared: &prepared, ready };
+        let case = Case { model, prepared: &prepared, ready, method: None };
         let dual = scaled(case).unwrap();
         let (qp, direct) = (dual.qp(ready, &*ready.dual), direct(case).unwrap());
         let recovery = Recovery::new(case, &dual, Faces::new(qp, direct)).unwrap();

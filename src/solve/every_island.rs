@@ -13,12 +13,14 @@ use crate::setup::Prepared;
 use crate::solve::answer::Ends;
 use crate::solve::case::Case;
 use crate::solve::island::{solve_island, Solved};
+use crate::solve::method::DualMethod;
 use crate::solve::start::Start;
 
 /// Solves every island, in parallel if there are threads; the number of threads does not change any bit of the answers.
 pub fn solve_islands<'a>(
     model: &'a Model,
     prepared: &'a Prepared,
+    method: Option<&dyn DualMethod>,
     start: &Start,
     watch: &mut Watch,
 ) -> Result<Ends<'a>> {
@@ -27,7 +29,7 @@ pub fn solve_islands<'a>(
     let (stops, threads) = (watch.stops.clone(), model.threads());
     let (is_heard, count) = (watch.log.is_heard(LogLevel::Phase), islands.len());
     let solve = |k: usize, say: &Say, voice: &mut dyn Voice| {
-        let case = Case { model, prepared, ready: &islands[k] };
+        let case = Case { model, prepared, ready: &islands[k], method };
         let (say, of) = (
             Arc::clone(say),
             if count == 1 { String::new() } else { format!("group {} of {count}, ", k + 1) },

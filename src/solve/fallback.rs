@@ -4,14 +4,15 @@
 use crate::error::Result;
 use crate::model::Settings;
 use crate::progress::Steps;
-use crate::qp::paper::algorithm_3;
 use crate::qp::{minimise, AcceptanceTest, Direct, Effort, Limits, Mended, Qp, Rung, Solution, Verdict};
-use crate::solve::paper;
+use crate::solve::method::DualMethod;
 
 /// How the dual is solved.
 #[derive(Clone, Copy)]
 pub struct MethodOptions<'a> {
     pub settings: &'a Settings,
+    /// In place of proportioning.
+    pub other: Option<&'a dyn DualMethod>,
     pub direct: Direct<'a>,
 }
 
@@ -33,8 +34,8 @@ pub fn solve_dual(
     let settings = means.settings;
     let most = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
     let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps: most };
-    if let Some(parameters) = paper::parameters(settings) {
-        return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, steps);
+    if let Some(other) = means.other {
+        return other.solve(settings, qp, None, start, judge, steps);
     }
     let mut solution = minimise(qp, start, limits, judge, steps)?;
     if solution.counts.direct > 0 {

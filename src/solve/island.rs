@@ -8,15 +8,15 @@ use crate::linalg::{Csr, Operator};
 use crate::model::{Accuracy, Model};
 use crate::platform::{interrupt, threads};
 use crate::progress::{Steps, Stops, Voice};
-use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Effort, Rung, Solution, Tries, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::{Contradictions, Unheld};
 use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
+use crate::solve::host_form::host_form;
 use crate::solve::interruptible::Interruptible;
-use crate::solve::paper::{parameters, HostUnits};
+use crate::solve::method::chosen;
 use crate::solve::presolve::presolve;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 use crate::solve::report::Outcome;
@@ -154,11 +154,15 @@ fn attempt(
     let (qp, direct) = (dual.qp(ready, &f), direct(case)?);
     let mut judge = Certifier::new(Recovery::new(case, dual, Faces::new(qp, direct))?);
     let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
-    let solution = match parameters(settings) {
-        Some(given) if given.units == Units::Printed && !case.has_friction() => {
-            HostUnits::new(case, &dual.gaps, given)?.solve(qp, start, &mut judge, steps)?
+    let other = chosen(settings, case.method)?;
+    let solution = match other.filter(|other| other.is_in_units_of_host(settings) && !case.has_friction()) {
+        Some(other) => {
+            let form = host_form(case, &dual.gaps)?;
+            other.solve(settings, qp, Some(&form), start, &mut judge, steps)?
         }
-        _ => solve_in_rounds(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
+        None => {
+            solve_in_rounds(case, &MethodOptions { settings, other, direct }, qp, start, &mut judge, steps)?
+        }
     };
     if matches!(solution.verdict, Verdict::Infeasible { .. }) && dual.unheld.is_none() {
         return Ok(Tried::NotHeld { far: judge.assumed.far });
@@ -235,7 +239,7 @@ fn finished_at_rest(recovery: &Recovery, ending: &mut Ending, spoilt: Option<End
 
 /// F for the direct method, which observes the memory limit.
 pub fn direct(case: Case<'_>) -> Result<Direct<'_>> {
-    let Case { model: Model { settings, .. }, prepared, ready } = case;
+    let Case { model: Model { settings, .. }, prepared, ready, .. } = case;
     let asked = usize::try_from(settings.direct_limit).unwrap_or(usize::MAX);
     let most = asked.min(ready.dual.order() + ready.dual.modes());
     let fits = prepared.done(case.model)?.operators.check_more(settings, Direct::bytes(most)).is_ok();

@@ -55,7 +55,7 @@ impl Problem {
             let (lambda, mu) = (island.contact.gather(lambda), equalities.gather(mu));
             let tangential = island.friction.tangential.gather(tangential);
             let answer = Candidate { u: &own, lambda: &lambda, mu: &mu, tangential: &tangential };
-            let data = Case { model, prepared, ready }.data()?;
+            let data = Case { model, prepared, ready, method: None }.data()?;
             let judged = match &ready.whole {
                 None => certify(&data, answer)?,
                 Some(whole) => whole.judged(model, &data, answer)?,

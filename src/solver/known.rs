@@ -14,7 +14,7 @@ impl Problem {
         let model = solved(host, decomposition);
         let mut all = None;
         for ready in &prepared.done(model)?.islands {
-            let own = products_of_known_states(Case { model, prepared, ready })?;
+            let own = products_of_known_states(Case { model, prepared, ready, method: None })?;
             all = all.map_or(own, |sum: usize| Some(sum + own.unwrap_or(0)));
         }
         all.ok_or_else(|| Error::new(Kind::State, "the last solve had no friction"))

@@ -24,10 +24,12 @@ pub use crate::constraints::{FrictionInput, RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
 pub use crate::mesh::ElementStorage;
-pub use crate::model::{options, Model, OptionInfo, OptionValue, Settings, Sizes};
+pub use crate::model::{
+    options, Method, Model, OptionInfo, OptionValue, PaperStep1, PaperUnits, Settings, Sizes,
+};
 pub use crate::progress::{Listener, LogLevel, LogListener, PhaseReport, Progress, Reply};
 pub use crate::qp::StepKind;
-pub use crate::solve::{Outcome, Report, RowState};
+pub use crate::solve::{DualMethod, HostForm, Outcome, Report, RowState};
 pub use body_facts::{BodyFacts, Factors, Origin};
 pub use findings::Findings;
 pub use problem::Problem;

@@ -13,7 +13,7 @@ use crate::platform::interrupt::Clock;
 use crate::platform::memory::Headroom;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::setup::{Prepared, Work};
-use crate::solve::{solve_islands, Report};
+use crate::solve::{solve_islands, DualMethod, Report};
 use crate::solver::decomposed::{answer_of_host, findings_of_host, of_host, same_bodies, solved};
 use crate::solver::findings::{redundant, Findings};
 use crate::solver::history::{Current, History};
@@ -32,6 +32,7 @@ pub struct Problem {
     pub(super) prepared: Prepared,
     pub(super) history: History,
     pub(super) findings: Option<Findings>,
+    method: Option<&'static dyn DualMethod>,
     host: Host,
     phases: Phases,
 }
@@ -89,7 +90,7 @@ impl Problem {
         watch.phases = Phases::default();
         self.decompose()?;
         noticed::loose(&watch.log, &self.model, self.parts())?;
-        let Self { model, decomposition, prepared, history, .. } = self;
+        let Self { model, decomposition, prepared, history, method: other, .. } = self;
         let (host, model) = (&*model, solved(model, decomposition));
         let told = |error| of_host(host, decomposition, error);
         prepared.set_up(model, watch).map_err(told)?;
@@ -98,7 +99,7 @@ impl Problem {
         method(&watch.log, model, prepared, start.name())?;
         noticed::repeated(&watch.log, host, || Ok(redundant(model, prepared.done(model)?)))?;
         let solving = Instant::now();
-        let ends = solve_islands(model, prepared, &start, watch).map_err(told)?;
+        let ends = solve_islands(model, prepared, *other, &start, watch).map_err(told)?;
         let failure = ends.failure.clone().map(told);
         watch.phases.add(Phase::DualSolve, solving.elapsed());
         watch.phases.move_time(Phase::DualSolve, Phase::Recovery, ends.recovery);
@@ -158,6 +159,11 @@ impl Problem {
         }
         self.phases = self.host.ended(watch);
         outcome
+    }
+
+    /// The method that solves take where option `method` is not `proportioning`; without one they are refused.
+    pub fn offer_method(&mut self, method: &'static dyn DualMethod) {
+        self.method = Some(method);
     }
 
     /// The function that receives the progress of setups and solves from now on.

@@ -42,6 +42,7 @@ fn stiffness(q: usize) -> Vec<f64> {
 /// The left membrane from the reference, four quarters, 21 contact rows, rows H u = 0.
 fn cut(case: &Case, redundant: bool) -> Problem {
     let mut problem = Problem::new();
+    problem.offer_method(&paper::Paper);
     let k = &case.bodies[0].0;
     let input = SparseInput { ptr: &k.ptr, col: &k.col, val: &k.val, storage: Storage::Lower };
     let left = k.ptr.len() - 1;

@@ -4,8 +4,8 @@
 
 use decks::random::Random;
 use feti_contact::linalg::Csr;
-use feti_contact::qp::paper::{PaperRule, Proportioning, Quadratic, Variant};
 use feti_contact::qp::Qp;
+use paper::{PaperRule, Proportioning, Quadratic, Variant};
 
 use crate::dense::{dot, norm, solve, Dense};
 use crate::eigenvalues::eigenvalues;

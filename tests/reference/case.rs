@@ -128,6 +128,7 @@ impl Case {
     /// Registers everything, with what the library is told about null spaces.
     pub fn problem_with(&self, hint: Hint) -> Problem {
         let mut problem = Problem::new();
+        problem.offer_method(&paper::Paper);
         let mut start = 0;
         for (k, r) in &self.bodies {
             let n = k.ptr.len() - 1;

@@ -22,6 +22,7 @@ pub fn with_motions(deck: &Deck, given: Modes) -> Result<Problem> {
 /// The same without null spaces.
 pub fn without_null_spaces(deck: &Deck) -> Result<Problem> {
     let mut problem = Problem::new();
+    problem.offer_method(&paper::Paper);
     for body in &deck.bodies {
         let p = problem.add_body(body.dofs())?;
         set_body(&mut problem, p, body)?;

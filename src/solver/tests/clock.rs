@@ -10,6 +10,10 @@ use crate::error::{Error, Kind};
 use crate::platform::tally;
 use crate::solver::{LogLevel, Modes, Outcome, Problem, Report, RowKind, RowsInput, SparseInput, Storage};
 
+#[allow(dead_code, unused_imports)]
+#[path = "../../../paper/src/lib.rs"]
+mod paper;
+
 /// The reason why the solve ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stop {
@@ -28,6 +32,7 @@ struct Ended {
 
 fn problem(deck: &Deck, options: &str) -> Problem {
     let mut problem = Problem::new();
+    problem.offer_method(&paper::Paper);
     let columns = |matrix: &decks::Csr| matrix.col.iter().map(|&j| j as i64).collect::<Vec<_>>();
     for body in &deck.bodies {
         let (p, n, k, modes) =

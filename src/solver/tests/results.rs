@@ -1,7 +1,7 @@
 //! Results that are read after a solve.
 
 use crate::error::Kind;
-use crate::solver::{Problem, RowKind, RowState, RowsInput, SparseInput, Storage};
+use crate::solver::{Outcome, Problem, RowKind, RowState, RowsInput, SparseInput, Storage};
 
 /// Two springs 1 against walls at 1.
 fn two_springs() -> Problem {
@@ -64,4 +64,15 @@ fn the_force_on_a_body_is_that_of_the_present_answer_and_of_the_kind_asked_for()
             }
         }
     }
+}
+
+#[test]
+fn a_method_that_nobody_has_offered_is_refused() {
+    let mut problem = two_springs();
+    problem.set_load(0, &[3.0]).unwrap();
+    problem.set_str("method", "paper-monotone").unwrap();
+    let error = problem.solve().unwrap_err();
+    assert_eq!((error.kind, error.to_string().contains("method")), (Kind::State, true));
+    problem.set_str("method", "proportioning").unwrap();
+    assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
 }

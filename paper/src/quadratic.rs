@@ -7,9 +7,9 @@
 //!
 //! Without equalities H = A and c = b.
 
-use crate::error::Result;
-use crate::linalg::vector::{axpy, dot, norm};
-use crate::qp::Qp;
+use feti_contact::error::Result;
+use feti_contact::linalg::vector::{axpy, dot, norm};
+use feti_contact::qp::Qp;
 
 pub struct Quadratic<'a> {
     /// A, b, D' (m x r), d.

@@ -1,6 +1,6 @@
 //! Conjugate gradients on a face of the bounds.
 
-use crate::linalg::vector::{axpy, dot};
+use feti_contact::linalg::vector::{axpy, dot};
 
 /// Conjugate gradients for min theta(y), y in W_I, I = A(x^k). While y is feasible, it is the point itself.
 pub(super) struct PaperFace {

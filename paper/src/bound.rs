@@ -1,12 +1,12 @@
 //! Algorithm 1, the general proportioning scheme, for (19): theta(x) -> min subject to x_i >= 0 (i bounded).
 
-use crate::error::Result;
-use crate::linalg::vector::{axpy, dot};
-use crate::qp::gradient::{at_bound, Split};
-use crate::qp::paper::face::PaperFace;
-use crate::qp::paper::variants::{extrapolate, feasible, monotone, Moved};
-use crate::qp::paper::{Quadratic, Variant};
-use crate::qp::{Counts, StepKind};
+use super::face::PaperFace;
+use super::variants::{extrapolate, feasible, monotone, Moved};
+use super::{Quadratic, Variant};
+use feti_contact::error::Result;
+use feti_contact::linalg::vector::{axpy, dot};
+use feti_contact::qp::{at_bound, Split};
+use feti_contact::qp::{Counts, StepKind};
 
 /// Curvature counts as zero below this part of the largest curvature so far.
 const FLAT: f64 = 1e-15;

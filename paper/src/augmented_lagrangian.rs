@@ -1,13 +1,13 @@
 //! Algorithm 3 for (24): theta(x) -> min subject to x_i >= 0 (i bounded) and D x = d, by augmented Lagrangians with
 //! adaptive precision of the inner problems. The multiplier of the answer is alpha = -(mu + rho (D x - d)).
 
-use crate::error::Result;
-use crate::linalg::vector::{axpy, norm};
-use crate::qp::coarse::Coarse;
-use crate::qp::paper::bound::Proportioning;
-use crate::qp::paper::sizes::PaperSizes;
-use crate::qp::paper::{Parameters, Quadratic, StepOne};
-use crate::qp::{AcceptanceTest, Counts, Observer, Qp, Solution, StepReport, Verdict};
+use super::bound::Proportioning;
+use super::sizes::PaperSizes;
+use super::{Parameters, Quadratic, StepOne};
+use feti_contact::error::Result;
+use feti_contact::linalg::vector::{axpy, norm};
+use feti_contact::qp::Coarse;
+use feti_contact::qp::{AcceptanceTest, Counts, Observer, Qp, Solution, StepReport, Verdict};
 
 /// How many times Step 2 is tightened if the answer is not accepted.
 const TIGHTENINGS: usize = 6;

@@ -1,12 +1,12 @@
 //! Reference values of rho_0, M, eta_0 and Step 2 of Algorithm 3. The printed numbers are absolute: at E = 2.1e11 every
 //! run with them fails. In units of |A| / |D|^2 the iteration does not depend on units or on the basis R.
 
-use crate::error::Result;
-use crate::linalg::random::scattered;
-use crate::linalg::vector::{axpy, norm};
-use crate::qp::coarse::Coarse;
-use crate::qp::paper::{Quadratic, Units};
-use crate::qp::AcceptanceTest;
+use super::{Quadratic, Units};
+use feti_contact::error::Result;
+use feti_contact::linalg::random::scattered;
+use feti_contact::linalg::vector::{axpy, norm};
+use feti_contact::qp::AcceptanceTest;
+use feti_contact::qp::Coarse;
 
 pub struct PaperSizes {
     /// Unit of rho.

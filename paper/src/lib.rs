@@ -1,19 +1,23 @@
-//! The paper's own methods, in its notation: Algorithm 1 for bounds only and Algorithm 3 for bounds and equalities. They
-//! keep the form of the paper, for its readers and as a baseline; the default is `qp/proportioning/`.
+//! Option `method` = paper-...: the paper's own methods in its notation, Algorithm 1 for bounds only and Algorithm 3 for bounds and
+//! equalities. They keep the form of the paper, for its readers and as a baseline; the default is `qp/proportioning/` of the
+//! library.
 //!
 //! | paper | file |
 //! |---|---|
 //! | (20) theta(x), L(x, mu, rho) | `quadratic.rs` |
-//! | (21)-(23) active set, g^I, g^C; proportional points | `qp/gradient.rs` |
+//! | (21)-(23) active set, g^I, g^C; proportional points | `qp/gradient.rs` of the library |
 //! | Algorithm 1 | `bound.rs` |
 //! | conjugate gradients for min theta(y), y in W_I | `face.rs` |
 //! | feasible, monotone and extrapolating proportioning | `variants.rs` |
 //! | (24)-(25), Algorithm 3 | `augmented_lagrangian.rs` |
 //! | reference values of rho_0, M and eta_0 | `sizes.rs` |
+//! | options `paper_...` | `options.rs`, `host_units.rs` |
 
 mod augmented_lagrangian;
 mod bound;
 mod face;
+mod host_units;
+mod options;
 mod quadratic;
 mod sizes;
 mod variants;
@@ -22,6 +26,37 @@ pub use augmented_lagrangian::algorithm_3;
 pub use bound::{PaperRule, Point, Proportioning};
 pub use quadratic::Quadratic;
 pub use variants::Variant;
+
+use feti_contact::error::Result;
+use feti_contact::qp::{AcceptanceTest, Observer, Qp, Solution};
+use feti_contact::solver::{DualMethod, HostForm, Settings};
+
+use host_units::HostUnits;
+
+/// Algorithm 3, as a [`Problem`](feti_contact::solver::Problem) takes it by `offer_method`.
+pub struct Paper;
+
+impl DualMethod for Paper {
+    fn is_in_units_of_host(&self, settings: &Settings) -> bool {
+        options::parameters(settings).units == Units::Printed
+    }
+
+    fn solve(
+        &self,
+        settings: &Settings,
+        qp: Qp,
+        form: Option<&HostForm>,
+        start: &[f64],
+        judge: &mut dyn AcceptanceTest,
+        observer: &mut dyn Observer,
+    ) -> Result<Solution> {
+        let parameters = options::parameters(settings);
+        match form {
+            Some(form) => HostUnits { parameters, form }.solve(qp, start, judge, observer),
+            None => algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, observer),
+        }
+    }
+}
 
 /// The parameters of Algorithm 3 in their printed symbols, and of Algorithm 1 within it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,10 @@
 //! The three variants of Algorithm 1 for a conjugate gradient step that leaves the bounds (end of Section 4).
 
-use crate::error::Result;
-use crate::linalg::vector::axpy;
-use crate::qp::gradient::feasible_step;
-use crate::qp::paper::face::PaperFace;
-use crate::qp::paper::Quadratic;
+use super::face::PaperFace;
+use super::Quadratic;
+use feti_contact::error::Result;
+use feti_contact::linalg::vector::axpy;
+use feti_contact::qp::feasible_step;
 
 /// Limit of trial steps of the extrapolating variant.
 const TRIALS: usize = 20;
