@@ -13,21 +13,22 @@ use crate::model::parts::Parts;
 use crate::model::settings::Settings;
 use crate::platform::threads;
 
-/// Bodies, rows and options of one contact problem. Every call checks its input first and stores all of it or nothing.
+/// Bodies, rows and options of one contact problem. Every call checks its input first and stores all of it or nothing; what
+/// is stored changes by these calls alone, so that the revisions tell what is out of date.
 pub struct Model {
-    pub settings: Settings,
-    pub bodies: Vec<GivenBody>,
+    pub(crate) settings: Settings,
+    pub(crate) bodies: Vec<GivenBody>,
     /// First unknown of every body among all unknowns, and their end, at most i64::MAX.
-    pub offsets: Vec<usize>,
-    pub contact: RowSet,
-    pub equalities: RowSet,
+    pub(crate) offsets: Vec<usize>,
+    pub(crate) contact: RowSet,
+    pub(crate) equalities: RowSet,
     /// Nodes of contact rows with friction, and their tangential rows.
-    pub friction: Friction,
+    pub(crate) friction: Friction,
     /// Body and dof of every unknown number of the host.
-    pub unknowns: HashMap<usize, (usize, usize)>,
-    pub revisions: Revisions,
+    pub(crate) unknowns: HashMap<usize, (usize, usize)>,
+    pub(crate) revisions: Revisions,
     /// If the bodies are pieces: the bodies of the host to which they belong.
-    pub parts: Option<Arc<Parts>>,
+    pub(crate) parts: Option<Arc<Parts>>,
 }
 
 /// Increased by every call that sets the named data, even if the data do not change.
@@ -171,7 +172,7 @@ impl Model {
         }
     }
 
-    pub fn rows_mut(&mut self, kind: RowKind) -> &mut RowSet {
+    pub(crate) fn rows_mut(&mut self, kind: RowKind) -> &mut RowSet {
         match kind {
             RowKind::Inequality => &mut self.contact,
             RowKind::Equality => &mut self.equalities,
@@ -184,7 +185,7 @@ impl Model {
     }
 
     /// The body, to be given new data.
-    pub fn change(&mut self, body: usize, change: Change) -> Result<&mut GivenBody> {
+    pub(crate) fn change(&mut self, body: usize, change: Change) -> Result<&mut GivenBody> {
         let bodies = self.bodies.len();
         let given = self.bodies.get_mut(body).ok_or_else(|| no_body(body, bodies))?;
         self.revisions.bodies += 1;
