@@ -5,18 +5,19 @@ use std::time::{Duration, Instant};
 use crate::error::Result;
 use crate::linalg::vector::norm_max;
 use crate::linalg::{Csr, Operator};
-use crate::model::{Accuracy, Model};
+use crate::model::{Accuracy, Model, Settings};
 use crate::platform::{interrupt, threads};
 use crate::progress::{Steps, Stops, Voice};
-use crate::qp::{self, Direct, Effort, Rung, Solution, Tries, Verdict};
+use crate::qp::{self, Direct, Effort, Qp, Rung, Solution, Tries, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
-use crate::solve::diagnosis::{Contradictions, Unheld};
+use crate::solve::diagnosis::Unheld;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
 use crate::solve::host_form::host_form;
 use crate::solve::interruptible::Interruptible;
 use crate::solve::method::chosen;
+use crate::solve::outcome::outcome;
 use crate::solve::presolve::presolve;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 use crate::solve::report::Outcome;
@@ -48,7 +49,7 @@ const CLEANINGS: usize = 4;
 /// Name of S11 in the log.
 const DIAGNOSIS: &str = "forces nearest to the load";
 
-/// Result of one attempt at an island.
+/// Result of one run on an island.
 enum Tried {
     Ended(Box<Solved>),
     /// Bodies slide along rows that resist them by no more than the accuracy of the data: G' without this resistance, and
@@ -94,8 +95,7 @@ fn solve_held(
     let mut cleanings = 0;
     loop {
         let cleans = cleanings < CLEANINGS;
-        match interrupt::part("dual solve", || attempt(case, number, (&dual, cleans), &start, stops, voice))?
-        {
+        match interrupt::part("dual solve", || run(case, number, (&dual, cleans), &start, stops, voice))? {
             Tried::Ended(mut solved) => {
                 solved.cleaned = dual.cleaned;
                 return Ok(*solved);
@@ -141,7 +141,8 @@ pub fn scaled(case: Case) -> Result<Scaled> {
     Ok(Scaled::new(ready, load, moved, gaps))
 }
 
-fn attempt(
+/// One run on these loads and gaps: method, least travel, corrector, verdict.
+fn run(
     case: Case,
     number: usize,
     (dual, cleans): (&Scaled, bool),
@@ -154,16 +155,7 @@ fn attempt(
     let (qp, direct) = (dual.qp(ready, &f), direct(case)?);
     let mut judge = Certifier::new(Recovery::new(case, dual, Faces::new(qp, direct))?);
     let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
-    let other = chosen(settings, case.method)?;
-    let solution = match other.filter(|other| other.is_in_units_of_host(settings) && !case.has_friction()) {
-        Some(other) => {
-            let form = host_form(case, &dual.gaps)?;
-            other.solve(settings, qp, Some(&form), start, &mut judge, steps)?
-        }
-        None => {
-            solve_in_rounds(case, &MethodOptions { settings, other, direct }, qp, start, &mut judge, steps)?
-        }
-    };
+    let solution = by_method(case, dual, (qp, direct), start, &mut judge, steps)?;
     if matches!(solution.verdict, Verdict::Infeasible { .. }) && dual.unheld.is_none() {
         return Ok(Tried::NotHeld { far: judge.assumed.far });
     }
@@ -173,52 +165,26 @@ fn attempt(
     let recovery = &judge.recovery;
     let spoilt = recovery.bring_to_rest(&mut ending)?;
     let slides = interrupt::never(|| recovery.slides(&ending))?;
-    let mut accuracy = Accuracy { data: settings.data_accuracy };
-    let goes_on = !ending.solution.verdict.is_stop();
-    if dual.cleaned.is_some() || !slides.all.is_empty() {
-        accuracy.data = case.model.accuracy_of_coordinates();
-    }
-    if goes_on && cleans && !recovery.friction {
+    let accuracy = Accuracy {
+        data: match dual.cleaned.is_some() || !slides.all.is_empty() {
+            true => case.model.accuracy_of_coordinates(),
+            false => settings.data_accuracy,
+        },
+    };
+    if cleans && !recovery.friction && !ending.solution.verdict.is_stop() {
         let cleaned = slides.without_noise(recovery, accuracy.data);
         if let Some(cleaned) = cleaned.filter(|_| Rung::Slides.is_tried()) {
             return Ok(Tried::Slides { cleaned, x: ending.solution.x, below: accuracy.data });
         }
     }
-    let is_solved = ending.solution.verdict == Verdict::Solved;
-    let finished = is_solved
-        && is_to_finish(settings, recovery, &ending, spoilt.is_some())
-        && (finished_at_rest(recovery, &mut ending, spoilt)?
-            || finish(recovery, &mut ending, Effort::AllSets)?.replaced);
+    let finished = corrected(settings, recovery, &mut ending, spoilt)?;
     let slide = if finished { interrupt::never(|| recovery.slides(&ending))? } else { slides }.worst();
-    let passed = ending.judgement.certificate.passed();
-    let mut outcome = match outcome(case, dual, &ending.solution)? {
-        Outcome::Solved if !passed => Outcome::Inaccurate,
-        // beside negative stiffness an equilibrium may be no minimum
-        Outcome::Stalled | Outcome::Inaccurate if passed && ready.dual.negative.is_empty() => Outcome::Solved,
-        outcome => outcome,
-    };
-    if outcome == Outcome::Solved && slide.is_some() {
-        outcome = Outcome::Marginal;
-    }
-    if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.load.is_some()) {
-        // the certificate for the host uses the host's own load
-        ending.judgement = interrupt::never(|| recovery.judged_on(&case.data()?, &ending.recovered))?;
-        let is_marginal = taken.share > accuracy.data || !ending.judgement.certificate.passed();
-        outcome = match outcome {
-            Outcome::Solved if taken.share > accuracy.marginal() => Outcome::Inaccurate,
-            Outcome::Solved if is_marginal => Outcome::Marginal,
-            outcome => outcome,
-        };
-    }
-    if matches!(outcome, Outcome::Inaccurate | Outcome::Stalled) && ending.judgement.travelled {
-        outcome = Outcome::Marginal;
-    }
-    let unheld = dual.unheld.as_ref().map_or(0.0, |taken| taken.share);
+    let outcome = outcome(case, dual, recovery, &mut ending, (slide.is_some(), accuracy))?;
     Ok(Tried::Ended(Box::new(Solved {
         ending,
         outcome,
         finished,
-        unheld,
+        unheld: dual.unheld.as_ref().map_or(0.0, |taken| taken.share),
         slide,
         cleaned: None,
         tries: Tries::default(),
@@ -226,15 +192,46 @@ fn attempt(
     })))
 }
 
-/// Corrects the answer of least travel that a far way has spoilt; whether it passes and replaces the other.
-fn finished_at_rest(recovery: &Recovery, ending: &mut Ending, spoilt: Option<Ending>) -> Result<bool> {
-    let Some(mut rest) = spoilt else { return Ok(false) };
-    finish(recovery, &mut rest, Effort::AllSets)?;
-    let passes = rest.judgement.certificate.passed();
-    if passes {
-        *ending = rest;
+/// Solves the dual by the method that the options ask for.
+fn by_method<'a>(
+    case: Case<'a>,
+    dual: &Scaled,
+    (qp, direct): (Qp<'a>, Direct<'a>),
+    start: &[f64],
+    judge: &mut Certifier<'a>,
+    steps: &mut Steps,
+) -> Result<Solution> {
+    let settings = &case.model.settings;
+    let other = chosen(settings, case.method)?;
+    match other.filter(|other| other.is_in_units_of_host(settings) && !case.has_friction()) {
+        Some(other) => {
+            let form = host_form(case, &dual.gaps)?;
+            other.solve(settings, qp, Some(&form), start, judge, steps)
+        }
+        None => solve_in_rounds(case, &MethodOptions { settings, other, direct }, qp, start, judge, steps),
     }
-    Ok(passes)
+}
+
+/// Corrects a solved answer by the data of the host, first that of least travel if a far way has spoilt it; whether a
+/// corrected answer has replaced it.
+fn corrected(
+    settings: &Settings,
+    recovery: &Recovery,
+    ending: &mut Ending,
+    spoilt: Option<Ending>,
+) -> Result<bool> {
+    let is_solved = ending.solution.verdict == Verdict::Solved;
+    if !is_solved || !is_to_finish(settings, recovery, ending, spoilt.is_some()) {
+        return Ok(false);
+    }
+    if let Some(mut rest) = spoilt {
+        finish(recovery, &mut rest, Effort::AllSets)?;
+        if rest.judgement.certificate.passed() {
+            *ending = rest;
+            return Ok(true);
+        }
+    }
+    Ok(finish(recovery, ending, Effort::AllSets)?.replaced)
 }
 
 /// F for the direct method, which observes the memory limit.
@@ -244,27 +241,4 @@ pub fn direct(case: Case<'_>) -> Result<Direct<'_>> {
     let most = asked.min(ready.dual.order() + ready.dual.modes());
     let fits = prepared.done(case.model)?.operators.check_more(settings, Direct::bytes(most)).is_ok();
     Ok(Direct { entries: &*ready.dual, limit: if fits { most } else { 0 } })
-}
-
-/// The outcome of the solution, or the error that names why there is no answer.
-fn outcome(case: Case, dual: &Scaled, solution: &Solution) -> Result<Outcome> {
-    match &solution.verdict {
-        Verdict::Solved => Ok(Outcome::Solved),
-        Verdict::StepLimit => Ok(Outcome::Iterations),
-        Verdict::TimeLimit => Ok(Outcome::Time),
-        Verdict::Cancelled => Ok(Outcome::Cancelled),
-        Verdict::Stalled | Verdict::Infeasible { .. } => Ok(Outcome::Stalled),
-        Verdict::Inaccurate => Ok(Outcome::Inaccurate),
-        Verdict::Unbounded { p } => {
-            let w: Vec<f64> = p.iter().map(|p| -p).collect();
-            let w = case.ready.rows.scaling.decoupling.solve_transposed(w);
-            match Contradictions::new(case, &dual.gaps).proved(&w) {
-                Ok(proved) => proved.map_or(Ok(Outcome::Stalled), Err),
-                Err(error) if Verdict::of_refusal(error.clone())? == Verdict::Cancelled => {
-                    Ok(Outcome::Cancelled)
-                }
-                Err(_) => Ok(Outcome::Time),
-            }
-        }
-    }
 }

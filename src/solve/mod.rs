@@ -19,6 +19,7 @@ mod known;
 mod method;
 mod near;
 mod negative;
+mod outcome;
 mod pivots;
 mod presolve;
 mod recovery;
