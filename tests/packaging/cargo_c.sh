@@ -9,7 +9,7 @@ mkdir -p "$work"
 make -C "$root" --no-print-directory install PREFIX=/usr LIBDIR=lib DESTDIR="$work/by_make" >/dev/null
 # Without optimisation, which changes neither files nor symbols.
 export CARGO_PROFILE_RELEASE_OPT_LEVEL=0 CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_INCREMENTAL=false
-(cd "$root" && CARGO_TARGET_DIR="$work/target" cargo cinstall --release --locked -p feti-contact-c --destdir "$work/by_cargo" --prefix /usr --libdir /usr/lib)
+(cd "$root" && CARGO_TARGET_DIR="$work/target" cargo cinstall --release --locked --destdir "$work/by_cargo" --prefix /usr --libdir /usr/lib)
 
 for way in make cargo; do
     prefix=$work/by_$way/usr
