@@ -1,7 +1,8 @@
 //! What stands below the figures of a deck.
 
 use crate::problems::Case;
-use crate::runs::{Program, Runs};
+use crate::programs::Program;
+use crate::runs::Runs;
 
 /// What was solved.
 const COUNTS: [&str; 8] =

@@ -1,6 +1,7 @@
 //! The figures with their goals.
 
-use crate::runs::{Program, Runs};
+use crate::programs::Program;
+use crate::runs::Runs;
 
 /// A figure is good enough below its goal, or above.
 #[derive(Clone, Copy)]

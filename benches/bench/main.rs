@@ -26,9 +26,11 @@ mod pictures;
 #[path = "../plot/mod.rs"]
 mod plot;
 mod problems;
+mod programs;
 mod runs;
 mod scaling;
 mod steps;
+mod sweeps;
 
 use std::io::Write;
 use std::path::Path;
@@ -37,7 +39,8 @@ use std::process::ExitCode;
 use figures::Figure;
 use peers::Peers;
 use problems::{Case, Model, CASES, PEERS};
-use runs::{Program, Runs};
+use programs::Program;
+use runs::Runs;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();

@@ -9,7 +9,7 @@ use crate::compiler::compiler;
 use crate::factors;
 use crate::matrix;
 use crate::problems::{Case, Model, PEERS};
-use crate::runs::{output, Program};
+use crate::programs::{output, Program};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const WORK: &str = env!("CARGO_TARGET_TMPDIR");

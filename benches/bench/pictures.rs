@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use crate::plot::{marked, Mark, Plot, Series, BLUE, GREEN, GREY, RED};
-use crate::runs::{Program, Runs};
-use crate::scaling::{Sweep, MEGABYTE, OURS, THREADS, UNIT};
+use crate::programs::Program;
+use crate::runs::Runs;
+use crate::sweeps::{Sweep, MEGABYTE, OURS, THREADS, UNIT};
 
 type Points = Vec<(f64, f64)>;
 

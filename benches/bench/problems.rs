@@ -2,7 +2,7 @@
 
 use decks::{rubbing, Block, Blocks, ByElements, Cube, Deck};
 
-use crate::runs::Program;
+use crate::programs::Program;
 
 /// A deck by its generator.
 #[derive(Clone, Copy, PartialEq)]

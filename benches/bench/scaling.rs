@@ -9,53 +9,18 @@
 
 use std::io::Write;
 use std::path::Path;
-use std::thread::available_parallelism;
 
 use crate::figures;
 use crate::peers::Peers;
 use crate::pictures;
 use crate::problems::{self, Case, Model};
-use crate::runs::{Program, Runs};
+use crate::programs::Program;
+use crate::runs::Runs;
+use crate::sweeps::{Sweep, CUT, MEGABYTE, OURS, SWEEPS, THREADS, UNIT};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 /// Unknowns beyond which a deck is run once.
 const LARGE: usize = 50_000;
-/// Bytes of a megabyte.
-pub const MEGABYTE: f64 = 1e6;
-
-pub const OURS: Program = Program::Ours(1);
-pub const UNIT: Program = Program::Cholmod(1);
-
-/// Decks of which one quantity grows.
-pub struct Sweep {
-    /// The quantity, as the runs print it.
-    pub name: &'static str,
-    /// What the abscissa of the pictures is.
-    pub label: &'static str,
-    pub decks: &'static [&'static str],
-}
-
-/// `threads` is the one sweep whose decks are solved on 1, 2, 4, ... threads instead.
-pub const THREADS: &str = "threads";
-/// Bodies by their elements on two threads; no pictures.
-const CUT: &str = "cut";
-
-const SWEEPS: [Sweep; 5] = [
-    Sweep { name: "dofs", label: "unknowns, two blocks", decks: &["2k", "4k", "13k", "40k", "92k", "144k"] },
-    Sweep {
-        name: "rows",
-        label: "contact rows, two blocks of about 40 thousand unknowns together, flatter and flatter",
-        decks: &["40k", "729_rows", "1296_rows", "1936_rows", "2704_rows", "4489_rows"],
-    },
-    Sweep {
-        name: "bodies",
-        label: "bodies that the same cube is cut into, glued",
-        decks: &["cut_1", "cut_8", "cut_27", "cut_64"],
-    },
-    Sweep { name: THREADS, label: "threads", decks: &["144k", "one_body", "64_bodies"] },
-    Sweep { name: CUT, label: "unknowns, two blocks", decks: &["144k_cut", "300k_cut", "989k_cut"] },
-];
-
 pub fn run(words: &[&str]) -> Result<(), String> {
     let (numbers, names): (Vec<&str>, Vec<&str>) =
         words.iter().copied().partition(|word| word.parse::<usize>().is_ok());
@@ -88,14 +53,6 @@ pub fn run(words: &[&str]) -> Result<(), String> {
 }
 
 impl Sweep {
-    pub fn programs(&self) -> Vec<Program> {
-        match self.name {
-            THREADS => thread_counts().into_iter().map(Program::Ours).collect(),
-            CUT => vec![Program::Cut(2)],
-            _ => vec![OURS, UNIT],
-        }
-    }
-
     /// Runs the programs of one deck in turn, unless the sweep before has done so, and prints what they found.
     fn measure(&self, case: &'static Case, runs: &mut Runs, peers: &Peers) -> Result<(), String> {
         let programs = self.programs();
@@ -163,11 +120,4 @@ fn same_bits(case: &Case, programs: &[Program], runs: &Runs) -> Result<(), Strin
         return Err("different bits on other numbers of threads, or when run again".into());
     }
     Ok(())
-}
-
-/// 1, 2, 4, ... and all threads of the machine.
-fn thread_counts() -> Vec<usize> {
-    let all = available_parallelism().map_or(1, |count| count.get());
-    let powers = (0..).map(|power| 1 << power).take_while(|&count| count < all);
-    powers.chain([all]).collect()
 }

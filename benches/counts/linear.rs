@@ -4,7 +4,7 @@
 use decks::Rows;
 use feti_contact::solver::{Problem, RowKind, RowsInput};
 
-use crate::measure::solved;
+use crate::solved::solved;
 
 /// The certificate must not ask for more than the residual that stops the linear solve.
 const ANY_CERTIFICATE: f64 = 1e-2;

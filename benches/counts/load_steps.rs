@@ -7,7 +7,8 @@ use feti_contact::error::Result as Solver;
 use feti_contact::solver::{Problem, RowKind};
 
 use crate::linear;
-use crate::measure::{prepared, solved, Measurement};
+use crate::measure::{prepared, Measurement};
+use crate::solved::solved;
 use crate::table::Case;
 
 const STEPS: usize = 6;

@@ -16,6 +16,7 @@ mod load_steps;
 mod measure;
 mod rubbing;
 mod sequence;
+mod solved;
 mod table;
 mod verdict;
 

@@ -3,10 +3,11 @@
 use std::time::Instant;
 
 use decks::Deck;
-use feti_contact::solver::{Outcome, Problem, Report, RowKind};
+use feti_contact::solver::{Problem, Report, RowKind};
 
 use crate::hand_over;
 use crate::linear;
+use crate::solved::solved;
 use crate::table::Case;
 
 /// The dual is solved to this fraction of the scale w of its gaps.
@@ -79,15 +80,4 @@ pub fn prepared(deck: &Deck, tolerance: f64) -> Result<Problem, String> {
     problem.set_i64("direct_limit", 0).map_err(|e| e.to_string())?;
     problem.set_f64("tolerance", tolerance).map_err(|e| e.to_string())?;
     Ok(problem)
-}
-
-/// The report of a solve that ended with an answer as good as asked for.
-pub fn solved(problem: &mut Problem, what: &str) -> Result<Report, String> {
-    let report = problem.solve().map_err(|error| format!("{what}: {error}"))?;
-    if report.outcome == Outcome::Solved {
-        return Ok(report);
-    }
-    let (outcome, worst) = (report.outcome, report.certificate.worst());
-    let products = report.counts.products;
-    Err(format!("{what}: {outcome:?} after {products} products with F, certificate {worst:.1e} of its limit"))
 }

@@ -6,8 +6,9 @@ use decks::rubbing::{self, Rubbing};
 use decks::{Cube, Deck, Stack};
 use feti_contact::solver::{Problem, Report};
 
-use crate::measure::{prepared, solved, TOLERANCE};
+use crate::measure::{prepared, TOLERANCE};
 use crate::sequence::{self, Sequence};
+use crate::solved::solved;
 
 /// Decks that share their goals.
 pub struct Group {

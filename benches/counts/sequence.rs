@@ -4,7 +4,8 @@
 use decks::Deck;
 use feti_contact::solver::{Problem, RowKind};
 
-use crate::measure::{prepared, solved, TOLERANCE};
+use crate::measure::{prepared, TOLERANCE};
+use crate::solved::solved;
 
 /// The sequence ends where no bound changes by more than this part of the largest.
 const SETTLED: f64 = 1e-6;

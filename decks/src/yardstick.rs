@@ -4,8 +4,7 @@
 //! the certificate's definitions). Everything comes from the host's data and the known answer; grounded unknowns (penalty
 //! supports) are left out of all sizes and judged singly. D = diag K, r = B'lambda + H'mu, s_i = (b_i D^-1 b_i' + C_i)^-1/2.
 
-use crate::dense::singular;
-use crate::varied::{orthonormal, remove};
+use crate::dense::{orthonormal, remove, singular};
 use crate::vector::axpy;
 use crate::{Csr, Deck, Rows};
 

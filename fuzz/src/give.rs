@@ -6,6 +6,7 @@ use feti_contact_c::*;
 
 use super::buffers::Out;
 use super::host::{Host, KINDS, LARGEST};
+use super::listeners::Watcher;
 use super::models::{self, Model};
 
 /// Adds a body like `model` and returns its number.
@@ -303,16 +304,6 @@ pub fn states(host: &mut Host) {
             }
         }
     }
-}
-
-/// What a host's progress function counts and does.
-#[derive(Default)]
-pub struct Watcher {
-    p: usize,
-    calls: u64,
-    /// Calls until it returns `verdict`.
-    until: u64,
-    verdict: i32,
 }
 
 /// Hears of progress; other calls on the problem are refused meanwhile.

@@ -4,6 +4,7 @@ use feti_contact_c::*;
 
 use super::buffers::{Cell, Digest, Out, Written};
 use super::bytes::Bytes;
+use super::listeners::{Listener, Watcher};
 use super::models::Model;
 
 /// Kinds of rows, by position in `Host::rows`.
@@ -35,11 +36,11 @@ pub struct Host<'a> {
     pub numbered: bool,
     /// A function of the host may report a failure.
     pub may_refuse: bool,
-    pub listener: Option<Box<super::whole::Listener>>,
+    pub listener: Option<Box<Listener>>,
     /// Numbers of saved states, and the rows of each kind and nodes that come back with them.
     pub states: Vec<(i64, [usize; 2], (usize, usize))>,
     /// What the host of [`super::give::progress`] counts; an address that stays.
-    pub watcher: Box<super::give::Watcher>,
+    pub watcher: Box<Watcher>,
     pub digest: Digest,
     /// Solves that ended with FETI_OK.
     pub certified: u64,

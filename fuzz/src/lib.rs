@@ -7,6 +7,7 @@
 //! | `buffers` | arrays for results that show whether they were written |
 //! | `models` | stiffness matrices of small bodies |
 //! | `host` | a host that spoils arguments, and what it checks after every call |
+//! | `listeners` | what its functions for progress and log keep |
 //! | `scenes` | whole problems that have a solution |
 //! | `give`, `ask` | the calls that change a problem, and those that read it |
 //! | `stiffness` | matrices in every form, copied or lent, their new values, functions of the host |
@@ -24,6 +25,7 @@ pub mod file;
 pub mod friction;
 pub mod give;
 pub mod host;
+pub mod listeners;
 pub mod models;
 pub mod scenes;
 pub mod stiffness;

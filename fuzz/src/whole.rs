@@ -8,6 +8,7 @@ use super::ask::sized;
 use super::buffers::Out;
 use super::give::{narrow, pick};
 use super::host::Host;
+use super::listeners::Listener;
 
 /// Arrays over more unknowns are not made.
 const MOST: usize = 1024;
@@ -98,14 +99,6 @@ pub fn of_body(host: &mut Host) {
             assert_eq!(facts.unknowns, n as i64);
         }
     }
-}
-
-/// What a host's log function counts, and when it gives up.
-#[derive(Default)]
-pub struct Listener {
-    level: i32,
-    /// Lines until it returns a failure.
-    left: u64,
 }
 
 /// Hears lines of the log: texts of one line, of no other level than it has asked for.

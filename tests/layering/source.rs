@@ -54,11 +54,11 @@ pub fn paths(file: &str, code: &str) -> Vec<Named> {
     starts.flat_map(from).collect()
 }
 
-/// `src/solver/file/mod.rs` -> [solver, file]; `c/src/lib.rs` -> [].
+/// `src/solver/file/mod.rs` -> [solver, file]; `c/src/lib.rs`, `main.rs` -> [].
 pub fn module_of(file: &str) -> Vec<String> {
     let file = file.split_once("src/").map_or(file, |(_, file)| file).trim_end_matches(".rs");
     let file = file.trim_end_matches("/mod");
-    file.split('/').filter(|name| *name != "lib").map(str::to_owned).collect()
+    file.split('/').filter(|name| !["lib", "main"].contains(name)).map(str::to_owned).collect()
 }
 
 /// The module of the file, and in it those opened with `mod name {` around `at`.

@@ -2,9 +2,9 @@
 
 use super::rows::sign;
 use super::{proof, Ends, Hard, Plan};
+use crate::dense::orthonormal;
 use crate::random::Random;
 use crate::varied::draft::Draft;
-use crate::varied::orthonormal;
 use crate::vector::axpy;
 use crate::{Deck, Rows};
 
@@ -31,7 +31,7 @@ pub(super) fn not_held(seed: u64, mut plan: Plan, mut draft: Draft) -> Hard {
     plan.note(&format!("driven by {share:.0e}"));
     let diagonal = draft.diagonal.clone();
     let mut hard = plan.finish(seed, draft);
-    let length = crate::varied::inner(&motion, &diagonal, &motion).sqrt();
+    let length = crate::dense::inner(&motion, &diagonal, &motion).sqrt();
     let drive = |size: f64, deck: &mut Deck| {
         let own = range.clone().map(|j| size * diagonal[j] * motion[j] / length);
         deck.bodies[p].load.iter_mut().zip(own).for_each(|(f, pull)| *f += pull);

@@ -3,10 +3,10 @@
 
 use super::{Kind, Plan};
 use crate::dense::solve;
+use crate::dense::{inner, orthonormal, remove};
 use crate::random::Random;
 use crate::varied::draft::Draft;
 use crate::varied::rows::{between, contact, push_contact, sizes, touch, Entries};
-use crate::varied::{inner, orthonormal, remove};
 use crate::vector::axpy;
 
 /// Random sign.

@@ -3,7 +3,7 @@
 use crate::dense::singular;
 use crate::random::Random;
 use crate::sparse::Triplets;
-use crate::vector::{axpy, dot};
+use crate::vector::dot;
 use crate::{Block, Body};
 
 /// Which springs of a body differ from each other: stiffness times 10^x, x in [-`decades`, 0].
@@ -160,31 +160,4 @@ fn resists(body: &Body, chosen: &[usize]) -> bool {
         let values = singular(columns).values;
         values[values.len() - 1] > 1e-2 * values[0]
     }
-}
-
-/// The span of the modes of a body with R'DR = I, D = diag K: Gram-Schmidt, twice.
-pub fn orthonormal(modes: &[Vec<f64>], diagonal: &[f64]) -> Vec<Vec<f64>> {
-    let mut basis: Vec<Vec<f64>> = Vec::with_capacity(modes.len());
-    for mode in modes {
-        let mut rest = mode.clone();
-        for _ in 0..2 {
-            remove(&basis, diagonal, &mut rest);
-        }
-        let length = inner(&rest, diagonal, &rest).sqrt();
-        rest.iter_mut().for_each(|value| *value /= length);
-        basis.push(rest);
-    }
-    basis
-}
-
-/// v := v - R R'D v with R'DR = I.
-pub fn remove(basis: &[Vec<f64>], diagonal: &[f64], v: &mut [f64]) {
-    for mode in basis {
-        axpy(-inner(mode, diagonal, v), mode, v);
-    }
-}
-
-/// x'D y.
-pub fn inner(x: &[f64], diagonal: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(diagonal).zip(y).map(|((x, d), y)| x * d * y).sum()
 }

@@ -1,8 +1,6 @@
 //! The final face: rows with a force and equality rows. Motions it leaves, rows that depend on others, its condition.
 
-use crate::dense::{eigenvalues, singular};
-use crate::varied::bodies::orthonormal;
-use crate::varied::draft::Draft;
+use crate::dense::{eigenvalues, orthonormal, singular};
 use crate::vector::dot;
 use crate::Deck;
 
@@ -24,10 +22,6 @@ pub(super) struct Face<'a> {
 }
 
 impl<'a> Face<'a> {
-    pub fn new(draft: &'a Draft) -> Face<'a> {
-        Self::of(&draft.deck, |i| draft.slack[i] == 0.0)
-    }
-
     /// With the contact rows that are `closed`.
     pub fn of(deck: &'a Deck, closed: impl Fn(usize) -> bool) -> Face<'a> {
         let diagonals = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal());

@@ -1,9 +1,10 @@
 //! A case in the order it is drawn: bodies, deformation, rows, forces, travel; then gaps and loads follow.
 
 use crate::dd::{self, Dd};
+use crate::dense::{inner, orthonormal, remove};
 use crate::random::Random;
-use crate::varied::bodies::{self, inner, orthonormal, remove, Spread};
-use crate::varied::{condition, rounded, rounded_to, rows, Class, Mixture, Varied, CLASSES};
+use crate::varied::bodies::{self, Spread};
+use crate::varied::{condition, rounded, rounded_to, Class, Varied};
 use crate::vector::axpy;
 use crate::yardstick::{all_grounded, body_of};
 use crate::{Deck, Rows};
@@ -31,26 +32,6 @@ pub(crate) struct Draft {
     pub mu: Vec<f64>,
     /// Slack of each contact row over the length of its group; 0 where it is closed.
     pub slack: Vec<f64>,
-}
-
-pub(super) fn case(seed: u64, mixture: &Mixture) -> Varied {
-    let mut random = Random::new(seed ^ 0x7661_7269_6564);
-    let main = CLASSES[(seed % CLASSES.len() as u64) as usize];
-    let mut classes = vec![main];
-    for &extra in mixture.extras {
-        let fits = extra != main && (main != Class::Thermal || extra != Class::Glue);
-        if random.chance(mixture.chance) && fits {
-            classes.push(extra);
-        }
-    }
-    let mut draft = Draft::new(classes, mixture.unknowns, random);
-    draft.round_stiffness();
-    draft.deform();
-    rows::draw(&mut draft);
-    draft.round_rows();
-    draft.travel();
-    draft.prescribe();
-    draft.finish(seed)
 }
 
 impl Draft {
@@ -113,7 +94,7 @@ impl Draft {
         }
     }
 
-    fn round_rows(&mut self) {
+    pub fn round_rows(&mut self) {
         if self.is(Class::Printed) {
             let digits = 8 + self.random.below(7);
             for rows in [&mut self.deck.contact, &mut self.deck.equalities] {
@@ -128,7 +109,7 @@ impl Draft {
         }
     }
 
-    fn round_stiffness(&mut self) {
+    pub fn round_stiffness(&mut self) {
         if self.is(Class::Rounded) {
             for body in &mut self.deck.bodies {
                 body.stiffness.val.iter_mut().for_each(|v| *v = rounded(*v));
@@ -190,7 +171,7 @@ impl Draft {
     }
 
     /// A penalty load is P u0, P the penalised diagonal: u_i = u0 - (sum_{j != i} K_ij u_j) / K_ii; no row touches it.
-    fn prescribe(&mut self) {
+    pub fn prescribe(&mut self) {
         let given: Vec<f64> = self.penalties.iter().map(|&dof| self.u[dof]).collect();
         for _ in 0..4 {
             for (&dof, &u0) in self.penalties.iter().zip(&given) {
@@ -203,9 +184,14 @@ impl Draft {
         }
     }
 
+    /// The final face: closed contact rows and equality rows.
+    pub(super) fn face(&self) -> condition::Face<'_> {
+        condition::Face::of(&self.deck, |i| self.slack[i] == 0.0)
+    }
+
     pub fn finish(mut self, seed: u64) -> Varied {
         let rounding = self.is(Class::Rounded);
-        let face = condition::Face::new(&self);
+        let face = self.face();
         let (undetermined, condition) = (face.undetermined, face.condition());
         let pilots = if self.is(Class::Pilots) { self.soften() } else { Vec::new() };
         self.set_gaps();

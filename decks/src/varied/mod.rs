@@ -7,7 +7,7 @@
 //! | file | |
 //! |---|---|
 //! | `bodies` | springs, networks, trusses, blocks, supports by penalty |
-//! | `draft` | the order in which a case is drawn |
+//! | `draft` | a case while it is drawn |
 //! | `rows` | contact rows, glue, struts, far rows |
 //! | `condition` | motions that the closed rows leave, condition of the final face |
 
@@ -18,9 +18,10 @@ pub(crate) mod rows;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use crate::dense::orthonormal;
+use crate::random::Random;
+use crate::varied::draft::Draft;
 use crate::Deck;
-
-pub use bodies::{inner, orthonormal, remove};
 
 /// What is special about a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -172,12 +173,28 @@ pub fn undetermined(deck: &Deck, forces: &[f64]) -> usize {
 
 /// The case of one seed; seeds 13 apart are of the same main class.
 pub fn case(seed: u64) -> Varied {
-    draft::case(seed, &MIXTURE)
+    mixed(seed, &MIXTURE)
 }
 
 /// The same from another mixture.
 pub fn mixed(seed: u64, mixture: &Mixture) -> Varied {
-    draft::case(seed, mixture)
+    let mut random = Random::new(seed ^ 0x7661_7269_6564);
+    let main = CLASSES[(seed % CLASSES.len() as u64) as usize];
+    let mut classes = vec![main];
+    for &extra in mixture.extras {
+        let fits = extra != main && (main != Class::Thermal || extra != Class::Glue);
+        if random.chance(mixture.chance) && fits {
+            classes.push(extra);
+        }
+    }
+    let mut draft = Draft::new(classes, mixture.unknowns, random);
+    draft.round_stiffness();
+    draft.deform();
+    rows::draw(&mut draft);
+    draft.round_rows();
+    draft.travel();
+    draft.prescribe();
+    draft.finish(seed)
 }
 
 /// The nearest number of 15 decimal digits.

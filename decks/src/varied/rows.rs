@@ -1,6 +1,5 @@
 //! Rows of varied problems with their forces: contact, glue, supports, struts within a body, rows out of reach.
 
-use crate::varied::condition::Face;
 use crate::varied::draft::Draft;
 use crate::varied::Class;
 use crate::vector::norm_max;
@@ -41,7 +40,7 @@ pub(crate) fn draw(draft: &mut Draft) {
 /// Closed rows or equality rows (without a force in thermal cases) until they resist every motion.
 pub(crate) fn hold(draft: &mut Draft, strength: f64) {
     for _ in 0..HOLDING {
-        if Face::new(draft).free_motions(HELD) == 0 {
+        if draft.face().free_motions(HELD) == 0 {
             return;
         }
         if draft.is(Class::Thermal) {

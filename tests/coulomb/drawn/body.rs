@@ -4,8 +4,6 @@ use decks::dense::singular;
 use decks::random::Random;
 use decks::{Block, Body, Csr};
 
-use super::node::Contact;
-
 /// Unknowns of an element within its body, and its matrix.
 pub type Element = (Vec<usize>, Vec<f64>);
 
@@ -163,26 +161,17 @@ impl Drawing {
         (bars, free)
     }
 
-    /// Stiff springs under the nodes of some contacts, across them or along every axis.
-    pub fn support(&mut self, random: &mut Random, contacts: &mut [Contact]) {
-        for contact in contacts.iter_mut() {
-            if random.chance(0.5) {
-                continue;
-            }
-            let p = contact.body;
-            let first = contact.own - self.offset(p);
-            let axes = if random.chance(0.5) { self.dim } else { 1 };
-            let stiff = self.stiffness[p] * random.decades(2.0, 6.0);
-            let body = &mut self.bodies[p];
-            let (mut k, n) = (dense(&body.stiffness), body.dofs());
-            for j in first..first + axes {
-                k[j * n + j] += stiff;
-                self.springs[p].push((j, stiff));
-                self.elements[p].push((vec![j], vec![stiff]));
-            }
-            body.stiffness = Csr::from_dense(n, &k);
-            body.null_space = null_space(&self.free[p], &self.springs[p]);
+    /// Springs under unknowns of body p.
+    pub fn stiffen(&mut self, p: usize, unknowns: std::ops::Range<usize>, stiff: f64) {
+        let body = &mut self.bodies[p];
+        let (mut k, n) = (dense(&body.stiffness), body.dofs());
+        for j in unknowns {
+            k[j * n + j] += stiff;
+            self.springs[p].push((j, stiff));
+            self.elements[p].push((vec![j], vec![stiff]));
         }
+        body.stiffness = Csr::from_dense(n, &k);
+        body.null_space = null_space(&self.free[p], &self.springs[p]);
     }
 
     /// Of the size of `moves`, and rigid motions `travel` times as large.

@@ -105,9 +105,9 @@ fn with_answer(random: &mut Random, class: &'static str, sizes: &Sizes) -> (Deck
         drawing.add(random, softer);
     }
     let most = if class == "many bodies" { 2 * count } else { sizes.nodes };
-    let mut contacts = contacts(random, class, &drawing, most);
+    let contacts = contacts(random, class, &drawing, most);
     if class == "stiff supports" {
-        drawing.support(random, &mut contacts);
+        node::support(&mut drawing, random, &contacts);
     }
     let elements = drawing.elements.clone();
     (answered(random, class, drawing, &contacts), elements)

@@ -227,3 +227,17 @@ fn unit(random: &mut Random, contact: &Contact) -> Vec<f64> {
         }
     }
 }
+
+/// Stiff springs under the nodes of some contacts, across them or along every axis.
+pub fn support(drawing: &mut Drawing, random: &mut Random, contacts: &[Contact]) {
+    for contact in contacts {
+        if random.chance(0.5) {
+            continue;
+        }
+        let p = contact.body;
+        let first = contact.own - drawing.offset(p);
+        let axes = if random.chance(0.5) { drawing.dim } else { 1 };
+        let stiff = drawing.stiffness[p] * random.decades(2.0, 6.0);
+        drawing.stiffen(p, first..first + axes, stiff);
+    }
+}

@@ -62,6 +62,11 @@ pub struct Doc {
 }
 
 impl Doc {
+    /// The first paragraph.
+    pub fn summary(&self) -> String {
+        self.paragraphs()[0].first().cloned().unwrap_or_default()
+    }
+
     pub fn parse(lines: &[String]) -> Result<Self, String> {
         check_characters(lines)?;
         let Some(start) = lines.iter().position(|line| is_header(line)) else {

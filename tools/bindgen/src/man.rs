@@ -5,7 +5,7 @@ use std::fmt::Write;
 use crate::c_types::prototype;
 use crate::model::{Api, Function};
 use crate::order;
-use crate::pages::{direction, summary, Faces};
+use crate::pages::{direction, Faces};
 use crate::statuses::{self, results};
 
 /// (file name, text) of every page, below `man3` and `man7`.
@@ -26,7 +26,7 @@ fn page(api: &Api, faces: &Faces, function: &Function) -> String {
     let [before, after] = function.doc.paragraphs();
     let name = &function.name;
     let mut out = title(api, name, 3);
-    let _ = write!(out, ".SH NAME\n{name} \\- {}\n", text(&summary(&function.doc)));
+    let _ = write!(out, ".SH NAME\n{name} \\- {}\n", text(&function.doc.summary()));
     let _ = write!(
         out,
         ".SH SYNOPSIS\n.nf\n#include <feti_contact.h>\n\n{};\n.fi\n",
@@ -91,12 +91,12 @@ fn overview(api: &Api) -> String {
     for group in order::groups(api).iter().filter(|group| !group.functions.is_empty()) {
         let _ = write!(out, ".SS {}\n{}\n", text(group.heading), text(group.says));
         for function in &group.functions {
-            let _ = write!(out, ".TP\n.BR {} (3)\n{}\n", function.name, text(&summary(&function.doc)));
+            let _ = write!(out, ".TP\n.BR {} (3)\n{}\n", function.name, text(&function.doc.summary()));
         }
     }
     out.push_str(".SH STATUSES\n");
     for constant in api.constants.iter().filter(|constant| constant.source == statuses::FILE) {
-        let meaning = text(&summary(&constant.doc));
+        let meaning = text(&constant.doc.summary());
         let _ = write!(
             out,
             ".TP\n.BR {} \" = {}\"\n{meaning}\n",

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::c_types::{declared, prototype};
-use crate::doc::{Direction, Doc};
+use crate::doc::Direction;
 use crate::fortran;
 use crate::model::{Api, Argument, Function};
 use crate::order;
@@ -38,15 +38,10 @@ fn list(api: &Api) -> String {
     for group in order::groups(api).iter().filter(|group| !group.functions.is_empty()) {
         let _ = write!(out, "\n## {}\n\n{}\n\n| function | does |\n|---|---|\n", group.heading, group.says);
         for function in &group.functions {
-            let _ = writeln!(out, "| [{0}]({0}.md) | {1} |", function.name, cell(&summary(&function.doc)));
+            let _ = writeln!(out, "| [{0}]({0}.md) | {1} |", function.name, cell(&function.doc.summary()));
         }
     }
     out
-}
-
-/// The first paragraph.
-pub fn summary(doc: &Doc) -> String {
-    doc.paragraphs()[0].first().cloned().unwrap_or_default()
 }
 
 fn page(api: &Api, faces: &Faces, function: &Function) -> String {
@@ -168,12 +163,12 @@ fn types(api: &Api) -> String {
     let mut out = "# Structs, functions of the host, constants\n\n## Structs\n".to_string();
     let groups = order::groups(api);
     for structure in groups.iter().flat_map(|group| &group.structs) {
-        let _ = write!(out, "\n### {}\n\n{}\n", structure.name, summary(&structure.doc));
+        let _ = write!(out, "\n### {}\n\n{}\n", structure.name, structure.doc.summary());
         let Some(fields) = &structure.fields else { continue };
         out.push_str("\n| member | meaning |\n|---|---|\n");
         for field in fields {
             let _ =
-                writeln!(out, "| `{}` | {} |", declared(&field.ty, &field.name), cell(&summary(&field.doc)));
+                writeln!(out, "| `{}` | {} |", declared(&field.ty, &field.name), cell(&field.doc.summary()));
         }
     }
     out.push_str("\n## Functions of the host\n");
@@ -187,7 +182,7 @@ fn types(api: &Api) -> String {
     out.push_str("\n## Constants\n\n| name | value | meaning |\n|---|---|---|\n");
     let constants = groups.iter().flat_map(|group| &group.constants);
     for constant in constants.filter(|constant| constant.source != statuses::FILE) {
-        let meaning = cell(&summary(&constant.doc));
+        let meaning = cell(&constant.doc.summary());
         let _ = writeln!(out, "| `{}` | {} | {meaning} |", constant.name, constant.value);
     }
     out

@@ -1,7 +1,6 @@
 //! What a function returns: the statuses of every call, and those that its text names with their reasons.
 
 use crate::model::{Api, Constant, Function};
-use crate::pages::summary;
 
 /// The constants of this file are statuses.
 pub const FILE: &str = "header/status.rs";
@@ -15,7 +14,7 @@ pub fn results(api: &Api, function: &Function) -> Vec<(String, String)> {
         told.extend(clauses(api, setup));
     }
     let general = of_every_call(api, function).into_iter().filter_map(|name| status(api, name));
-    let general: Vec<_> = general.map(|constant| (constant.name.clone(), summary(&constant.doc))).collect();
+    let general: Vec<_> = general.map(|constant| (constant.name.clone(), constant.doc.summary())).collect();
     let order: Vec<_> = general.iter().chain(&told).map(|(name, _)| name.clone()).collect();
     let mut results: Vec<(String, String)> = Vec::new();
     for name in order {
@@ -67,7 +66,7 @@ fn clauses(api: &Api, function: &Function) -> Vec<(String, String)> {
     for clause in before.iter().flat_map(|text| text.split(". ")).flat_map(|text| text.split("; ")) {
         let (names, when) = begin(clause.trim_end_matches('.'));
         for constant in names.iter().filter_map(|name| status(api, name)) {
-            let reason = if when.is_empty() { summary(&constant.doc) } else { format!("{when}.") };
+            let reason = if when.is_empty() { constant.doc.summary() } else { format!("{when}.") };
             found.push((constant.name.clone(), upper(&reason)));
         }
     }
