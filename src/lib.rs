@@ -86,3 +86,7 @@ pub mod solver;
 // The sources of crate paper, among the unit tests, know this library by its name.
 #[cfg(test)]
 extern crate self as feti_contact;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/rust.md")]
+struct FromRust;
