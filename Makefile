@@ -3,8 +3,8 @@
 # make metis     tests with the feature metis
 # make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls file" picks some
 # make sanitize  C and Fortran drivers under AddressSanitizer     make loom      registry and pools in all orders of two threads
-# make coverage  lines of c/src that the tests run              make overhead  what the C ABI costs on the smallest problem
-# make mutants   wrong changes of src, one after the other, that the Rust tests have to notice (about half an hour);
+# make coverage  lines of c/src that the tests run                make overhead  what the C ABI costs on the smallest problem
+# make mutants   wrong changes of src and c/src, one by one, that the Rust tests have to notice (about half an hour);
 #                CHANGES="17 52" picks some, CHANGES=--places tells where they are
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some,
 #                DECKS=sequence compares friction with sequences of problems of Tresca (5 minutes)

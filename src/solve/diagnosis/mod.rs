@@ -1,6 +1,5 @@
-//! The only place that states why there is no answer: a load that nothing holds, or rows that contradict each other. It receives a
-//! candidate for the proof and tests it on the data of the host. Without a proof it makes no statement, and the
-//! next method follows.
+//! Why there is no answer: a load that nothing holds, or rows that contradict each other. It receives a candidate for the proof and
+//! tests it on the data of the host. Without a proof it makes no statement, and the next method follows.
 //!
 //! | module | claim and its proof |
 //! |---|---|
