@@ -153,7 +153,7 @@ bits:
 	@BATTERY=$(or $(BITS),1000) $(CARGO) test --release --locked --quiet --test battery -- \
 	    the_bits_of_many --ignored --nocapture | grep ': [0-9a-f]\{16\}$$'
 
-test:
+test: lib
 	@tools/setup.sh flang-19
 	$(CARGO) test --release --workspace --locked
 	@$(MAKE) --no-print-directory stage data

@@ -1,5 +1,5 @@
 //! CHOLMOD as an oracle, from the Rust harness: a C and a Fortran driver are compiled with the crate `cc` against
-//! SuiteSparse and the library of this test run, and solve every reference case. What they check is in
+//! SuiteSparse and the library, and solve every reference case. What they check is in
 //! `tests/abi/c/cholmod_oracle.c` and `tests/abi/fortran/cholmod_oracle.f90`.
 #![cfg(all(unix, target_os = "linux"))]
 
@@ -21,7 +21,7 @@ const WORK: &str = env!("CARGO_TARGET_TMPDIR");
 /// What Rust's standard library needs from the system when the archive is linked.
 const SYSTEM: [&str; 7] = ["-lcholmod", "-lgcc_s", "-lutil", "-lrt", "-lpthread", "-lm", "-ldl"];
 
-/// The archive that `cargo test` has built beside this test.
+/// The archive that `make lib` has built: no test of cargo builds it, because none can link it as a crate.
 fn library() -> PathBuf {
     let here = std::env::current_exe().expect("path of the test");
     let deps = here.parent().expect("folder of the test");
@@ -29,7 +29,7 @@ fn library() -> PathBuf {
     found
         .into_iter()
         .find(|path| path.exists())
-        .unwrap_or_else(|| panic!("no libfeti_contact.a in {}", deps.display()))
+        .unwrap_or_else(|| panic!("no libfeti_contact.a beside {}: `make lib` builds it", deps.display()))
 }
 
 /// The reference cases as plain text, unpacked once.
