@@ -2,8 +2,8 @@
 
 use feti_contact::solver::{self, Modes, Outcome, RowKind, Storage};
 
-use crate::case::{difference, Case, Sparse};
-use crate::problems::Problem;
+use super::case::{difference, Case, Sparse};
+use super::problems::Problem;
 
 pub struct Run {
     pub outer: usize,

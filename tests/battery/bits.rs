@@ -9,7 +9,7 @@ use decks::{battery, Blocks, Cube, Deck, Membrane, Stack};
 use feti_contact::error::Result;
 use feti_contact::solver::{Problem, Report, RowKind};
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 /// u, lambda, mu and gaps bit by bit, and what the report says but for its times and bytes.
 fn bits(problem: &mut Problem, deck: &Deck) -> u64 {
@@ -84,16 +84,25 @@ fn the_bits_of_many_answers() {
     }
     for (name, mixture) in [("hard", &hard::MIXTURE), ("hard, other mixture", &hard::SECOND_MIXTURE)] {
         let case = |seed| hard::mixed(seed, mixture);
-        let answers =
-            crate::seeds().map(case).map(|case| match crate::hard::problem(&case.deck, case.given) {
+        let answers = crate::battery::seeds().map(case).map(|case| {
+            match crate::battery::hard::problem(&case.deck, case.given) {
                 Ok(mut problem) => bits(&mut problem, &case.deck),
                 Err(_) => 0,
-            });
+            }
+        });
         lines(&mut out, name, answers);
     }
-    lines(&mut out, "varied", crate::seeds().map(|seed| of_deck(&varied::case(seed).deck, "")));
-    lines(&mut out, "known outcome", battery::cases(crate::seeds()).map(|case| of_deck(&case.deck, "")));
-    lines(&mut out, "marginal", crate::seeds().map(|seed| of_deck(&battery::marginal(seed).deck, "")));
+    lines(&mut out, "varied", crate::battery::seeds().map(|seed| of_deck(&varied::case(seed).deck, "")));
+    lines(
+        &mut out,
+        "known outcome",
+        battery::cases(crate::battery::seeds()).map(|case| of_deck(&case.deck, "")),
+    );
+    lines(
+        &mut out,
+        "marginal",
+        crate::battery::seeds().map(|seed| of_deck(&battery::marginal(seed).deck, "")),
+    );
     assert!(!out.is_empty());
     println!("{out}");
 }

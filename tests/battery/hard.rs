@@ -9,9 +9,10 @@ use decks::{second, Deck};
 use feti_contact::error::{Error, Kind, Proof, Result};
 use feti_contact::solver::{Outcome, Problem, Report};
 
-use crate::rungs::{self, Ended};
-use crate::varied::{answer, CONDITION};
-use crate::{hand_over, seeds};
+use crate::battery::seeds;
+use crate::battery::varied::{answer, CONDITION};
+use crate::support::hand_over;
+use crate::support::rungs::{self, Ended};
 
 /// Of the cases with an answer this part may end otherwise: up to that condition, and beyond it.
 const UNSOLVED: f64 = 1e-4;

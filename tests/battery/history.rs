@@ -8,9 +8,10 @@ use decks::yardstick::Answer;
 use decks::{Deck, Rows};
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::hard::yardstick;
-use crate::varied::{answer, CONDITION};
-use crate::{hand_over, seeds};
+use crate::battery::hard::yardstick;
+use crate::battery::seeds;
+use crate::battery::varied::{answer, CONDITION};
+use crate::support::hand_over;
 
 const LINES: usize = 60;
 /// Number of problems of the ordinary run, one for this many of the others.
@@ -181,10 +182,10 @@ fn an_answer_does_not_depend_on_what_the_problem_was_before() {
     for seed in seeds().step_by(SHARE as usize) {
         let mut random = Random::new(seed ^ 0x6869_7374);
         let (deck, undetermined, condition) = if random.chance(0.6) {
-            let case = hard::mixed(seed, crate::hard::mixture());
+            let case = hard::mixed(seed, crate::battery::hard::mixture());
             (case.deck, case.undetermined > 0, case.condition)
         } else {
-            let case = varied::mixed(seed, crate::mixture());
+            let case = varied::mixed(seed, crate::battery::mixture());
             (case.deck, case.undetermined > 0, case.condition)
         };
         if hand_over::problem(&deck).is_err() {

@@ -5,7 +5,8 @@ use decks::Deck;
 use feti_contact::error::{Error, Kind};
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::{hand_over, some_seeds};
+use crate::battery::some_seeds;
+use crate::support::hand_over;
 
 /// Number of problems of the ordinary run, one for this many of the clear ones.
 const SHARE: u64 = 4;

@@ -3,7 +3,7 @@
 use decks::{Blocks, Cube, Deck, Glue, Membrane, Moduli, Stack};
 use feti_contact::solver::Outcome;
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 fn assert_solved(deck: &Deck) {
     assert!(deck.dofs() <= 5000, "{}: {} dofs", deck.name, deck.dofs());

@@ -13,8 +13,9 @@ use decks::{Deck, Rows};
 use feti_contact::error::{Error, Kind, Proof, Result};
 use feti_contact::solver::{Modes, Outcome, Problem};
 
-use crate::varied::{answer, CONDITION};
-use crate::{face, hand_over, some_seeds};
+use crate::battery::some_seeds;
+use crate::battery::varied::{answer, CONDITION};
+use crate::support::{face, hand_over};
 
 /// Number of problems of the ordinary run, one for this many of the others.
 const SHARE: u64 = 2;

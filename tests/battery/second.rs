@@ -6,8 +6,9 @@ use decks::varied::condition;
 use decks::yardstick::Yardstick;
 use feti_contact::solver::Outcome;
 
-use crate::varied::{answer, CONDITION};
-use crate::{hand_over, seeds};
+use crate::battery::seeds;
+use crate::battery::varied::{answer, CONDITION};
+use crate::support::hand_over;
 
 /// Unknowns of a problem at most.
 const UNKNOWNS: usize = 60;

@@ -4,7 +4,7 @@ use approx::assert_relative_eq;
 use decks::small::{FacingSprings, GluedBar, Obstacle, Solved, SpringAndBlock};
 use feti_contact::solver::{Outcome, RowKind};
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 /// The answer of the library is that by hand, to 1e-12 of the largest number of its kind, a load among the forces.
 fn assert_by_hand(by_hand: &Solved) {

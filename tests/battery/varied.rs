@@ -8,8 +8,9 @@ use decks::varied::{self, Varied, MIXTURE, SECOND_MIXTURE};
 use decks::yardstick::{Answer, Yardstick};
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 
-use crate::rungs::{self, Ended};
-use crate::{hand_over, mixture, seeds, some_seeds};
+use crate::battery::{mixture, seeds, some_seeds};
+use crate::support::hand_over;
+use crate::support::rungs::{self, Ended};
 
 /// Number of problems of the ordinary run, one for this many of the others.
 const SHARE: u64 = 2;

@@ -4,7 +4,8 @@ use decks::Deck;
 use feti_contact::error::Kind;
 use feti_contact::solver::{Problem, RowKind, RowState};
 
-use crate::{answer, answer_of, assert_near, body, hand_over, solved};
+use crate::compliance::{answer, answer_of, assert_near, body, solved};
+use crate::support::hand_over;
 
 /// Springs k1, k2 at their walls, loads f1, f2, gap c, a spring k between their ends: u1 - u2 - c <= lambda/k.
 fn facing(k: f64, gap: f64) -> Deck {

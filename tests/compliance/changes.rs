@@ -4,7 +4,8 @@ use decks::{Cube, Deck, Stack};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Problem, RowKind};
 
-use crate::{answer, answer_of, assert_near, hand_over, solved};
+use crate::compliance::{answer, answer_of, assert_near, solved};
+use crate::support::hand_over;
 
 fn stack() -> Deck {
     Stack { in_plane: vec![4, 3], layers: vec![1], noise: 0.1, ..Stack::default() }.build()

@@ -5,7 +5,8 @@ use decks::random::Random;
 use decks::{battery, Cube, Deck, Glue, Moduli, Rows, Stack};
 use feti_contact::solver::{Problem, Report};
 
-use crate::{answer, assert_near, body, hand_over, solved};
+use crate::compliance::{answer, assert_near, body, solved};
+use crate::support::hand_over;
 
 /// The deck with its springs as bodies behind all others.
 fn with_explicit_springs(deck: &Deck) -> Deck {

@@ -7,11 +7,11 @@ use std::ops::Range;
 use feti_contact::error::{Error, Kind, Proof};
 use feti_contact::solver::{FrictionState, Outcome, Problem, Report, RowKind};
 
-use crate::drawn::{case, Drawn, Known, Sizes, OTHER_SIZES, SIZES};
-use crate::enumeration::{self, Enumerated};
-use crate::hand_over;
-use crate::judge::{self, Answer};
-use crate::rungs::{self, Ended};
+use crate::coulomb::drawn::{case, Drawn, Known, Sizes, OTHER_SIZES, SIZES};
+use crate::coulomb::enumeration::{self, Enumerated};
+use crate::coulomb::judge::{self, Answer};
+use crate::support::hand_over;
+use crate::support::rungs::{self, Ended};
 
 /// Number of problems of the ordinary run and the seed of the first; the variables BATTERY, BATTERY_SEED and BATTERY_MIXTURE = 2,
 /// larger problems, ask for others.

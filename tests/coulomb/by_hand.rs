@@ -4,7 +4,7 @@ use decks::{Body, Csr, Deck};
 use feti_contact::error::{Kind, Proof};
 use feti_contact::solver::{FrictionState, Outcome, Problem, RowKind};
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 /// A point on springs `k` along x and y, pressed onto a wall below by `press` and pushed along it by `push`: contact row
 /// `-u_y <= 0`, tangential row `u_x`.

@@ -8,9 +8,10 @@ use decks::{Block, Body, Csr, Deck, Friction};
 use feti_contact::error::{Error, Kind, Proof};
 use feti_contact::solver::{FrictionState, Modes, Outcome, Problem};
 
-use crate::battery::{answer, seeds};
-use crate::rungs::{self, Ended};
-use crate::{hand_over, judge};
+use crate::coulomb::battery::{answer, seeds};
+use crate::coulomb::judge;
+use crate::support::hand_over;
+use crate::support::rungs::{self, Ended};
 
 /// Number of pressed blocks of the ordinary run.
 const BLOCKS: u64 = 300;

@@ -4,9 +4,9 @@ use decks::random::Random;
 use decks::{Deck, Friction};
 use feti_contact::solver::{FrictionState, Outcome, Problem, RowKind};
 
-use crate::hand_over;
-use crate::struck_out::springs;
-use crate::tied::slip;
+use crate::coulomb::struck_out::springs;
+use crate::coulomb::tied::slip;
+use crate::support::hand_over;
 
 /// A plate that only moves across a wall, pressed onto it at several corners; every corner slides on springs of its own.
 struct Plate {

@@ -5,8 +5,8 @@ use decks::{Block, Deck, Friction, Rows};
 use feti_contact::error::Result;
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::drawn::{elements, Element};
-use crate::hand_over;
+use crate::coulomb::drawn::{elements, Element};
+use crate::support::hand_over;
 
 /// A block in the plane, each of whose unknowns has a spring: its unknowns and its elements.
 fn block(random: &mut Random, along: usize) -> (usize, Vec<Element>) {

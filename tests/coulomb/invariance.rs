@@ -4,11 +4,11 @@ use decks::{Deck, Friction, Rows};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Outcome, Problem};
 
-use crate::battery::answer;
-use crate::drawn::{case, Drawn, SIZES};
-use crate::enumeration;
-use crate::hand_over;
-use crate::judge::{self, Answer};
+use crate::coulomb::battery::answer;
+use crate::coulomb::drawn::{case, Drawn, SIZES};
+use crate::coulomb::enumeration;
+use crate::coulomb::judge::{self, Answer};
+use crate::support::hand_over;
 
 /// Problems of every class.
 const SEEDS: std::ops::Range<u64> = 20_000..20_170;

@@ -3,10 +3,11 @@
 use decks::{Deck, Rows};
 use feti_contact::solver::{Modes, Outcome, RowKind};
 
-use crate::battery::answer;
-use crate::driven::pressed;
-use crate::judge::Answer;
-use crate::{drawn, hand_over};
+use crate::coulomb::battery::answer;
+use crate::coulomb::drawn;
+use crate::coulomb::driven::pressed;
+use crate::coulomb::judge::Answer;
+use crate::support::hand_over;
 
 /// An increment is right if its error is below this part of it, or below this part of what has moved: loads are rounded, and the answer
 /// before is known no better.
@@ -63,7 +64,7 @@ fn fault(deck: &Deck, before: &Answer, left: f64, modes: Modes) -> Option<String
     let found = answer(&problem);
     if modes == Modes::Exact {
         // there may be other rests
-        let (error, what) = crate::judge::worst(&rest, &found);
+        let (error, what) = crate::coulomb::judge::worst(&rest, &found);
         return (!(error <= 1e-5)).then(|| format!("{what}: {error:e}"));
     }
     let forces = |of: &Answer| [&of.lambda[..], &of.along, &of.mu].concat();

@@ -6,8 +6,8 @@ use decks::{Body, Csr, Deck};
 use feti_contact::error::Kind;
 use feti_contact::solver::Outcome;
 
-use crate::enumeration::{answers, slides};
-use crate::hand_over;
+use crate::coulomb::enumeration::{answers, slides};
+use crate::support::hand_over;
 
 /// A floating body in the plane: two unknowns a point.
 fn body(dense: &[Vec<f64>], modes: Option<Vec<Vec<f64>>>, load: Vec<f64>) -> Body {

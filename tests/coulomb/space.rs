@@ -8,10 +8,10 @@ use decks::Deck;
 use feti_contact::error::Kind;
 use feti_contact::solver::Outcome;
 
-use crate::battery::answer;
-use crate::drawn::{case, Sizes};
-use crate::enumeration::{distance, eliminated, size, Dual, Ends};
-use crate::hand_over;
+use crate::coulomb::battery::answer;
+use crate::coulomb::drawn::{case, Sizes};
+use crate::coulomb::enumeration::{distance, eliminated, size, Dual, Ends};
+use crate::support::hand_over;
 
 const TINY: Sizes = Sizes { nodes: 2, bodies: 2, many: 4 };
 /// Forces, gaps and slips below this part of the largest are none.

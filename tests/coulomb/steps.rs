@@ -3,7 +3,7 @@
 use decks::{Block, Deck, Friction};
 use feti_contact::solver::{Outcome, Problem};
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 const BLOCKS: usize = 8;
 const ELEMENTS: [usize; 3] = [16, 8, 1];

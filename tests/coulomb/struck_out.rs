@@ -5,7 +5,7 @@ use decks::random::Random;
 use decks::{Body, Csr, Deck, Friction};
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 /// The point on springs along its unknowns.
 pub fn springs(stiffness: &[f64], load: &[f64]) -> Body {

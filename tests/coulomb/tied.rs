@@ -4,8 +4,8 @@ use decks::random::Random;
 use decks::Deck;
 use feti_contact::solver::{FrictionState, Outcome, RowKind};
 
-use crate::hand_over;
-use crate::struck_out::springs;
+use crate::coulomb::struck_out::springs;
+use crate::support::hand_over;
 
 /// `r` with `(f_x / (k_x r + b))^2 + (f_y / (k_y r + b))^2 = 1`: the slip of a point on springs k pushed by f beyond the bound b, because
 /// `(k + b / r) u = f`, `r = |u|`.

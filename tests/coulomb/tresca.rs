@@ -4,10 +4,10 @@
 use decks::Deck;
 use feti_contact::solver::Outcome;
 
-use crate::battery::answer;
-use crate::drawn::{case, OTHER_SIZES, SIZES};
-use crate::enumeration::{distance, eliminated, size, Dual, Ends};
-use crate::hand_over;
+use crate::coulomb::battery::answer;
+use crate::coulomb::drawn::{case, OTHER_SIZES, SIZES};
+use crate::coulomb::enumeration::{distance, eliminated, size, Dual, Ends};
+use crate::support::hand_over;
 
 /// Forces, gaps and slips below this part of the largest are none; an answer with such a force, gap or slip where it must have one
 /// may be one of several and is not compared.

@@ -2,7 +2,7 @@
 
 use feti_contact::qp::friction::{Force, Node};
 
-use crate::problem::{Given, Random};
+use crate::friction::problem::{Given, Random};
 
 fn length(t: [f64; 2]) -> f64 {
     t[0].hypot(t[1])

@@ -3,8 +3,8 @@
 use feti_contact::qp::friction::{known_face, FrictionStart, Pairs};
 use feti_contact::qp::Verdict;
 
-use crate::deck::Deck;
-use crate::problem::Content;
+use crate::friction::deck::Deck;
+use crate::friction::problem::Content;
 
 /// Products of both.
 fn counts(deck: Deck) -> (usize, usize) {

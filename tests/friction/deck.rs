@@ -4,8 +4,8 @@
 use feti_contact::linalg::{Csr, Matrix, PivotedCholesky};
 use feti_contact::qp::friction::{Cones, Node};
 
-use crate::dense::{Dense, OfMatrices};
-use crate::problem::{Given, Parts};
+use crate::friction::dense::{Dense, OfMatrices};
+use crate::friction::problem::{Given, Parts};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Deck {

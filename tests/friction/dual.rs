@@ -7,9 +7,9 @@ use feti_contact::qp::friction::{
 };
 use feti_contact::qp::Verdict;
 
-use crate::deck::Deck;
-use crate::dense::Dense;
-use crate::problem::{Content, Given, Random};
+use crate::friction::deck::Deck;
+use crate::friction::dense::Dense;
+use crate::friction::problem::{Content, Given, Random};
 
 struct OfBodies(Preconditioner);
 

@@ -2,7 +2,7 @@
 
 use feti_contact::qp::friction::Node;
 
-use crate::problem::Given;
+use crate::friction::problem::Given;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Tangential {

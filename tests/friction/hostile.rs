@@ -6,8 +6,8 @@ use feti_contact::platform::threads::with_team;
 use feti_contact::qp::friction::{friction, Cones, FrictionSolution, FrictionStart, Node, State};
 use feti_contact::qp::{Observer, StepReport, Verdict};
 
-use crate::deck::Deck;
-use crate::problem::{Content, Given, Random};
+use crate::friction::deck::Deck;
+use crate::friction::problem::{Content, Given, Random};
 
 fn block() -> Deck {
     Deck::new(2, 12, 1, 0.6, 0.8)

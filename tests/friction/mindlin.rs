@@ -4,8 +4,8 @@ use feti_contact::linalg::{Matrix, SpdSolver};
 use feti_contact::qp::friction::{FrictionStart, Node};
 use feti_contact::qp::Verdict;
 
-use crate::dense::OfMatrices;
-use crate::problem::Given;
+use crate::friction::dense::OfMatrices;
+use crate::friction::problem::Given;
 
 const MU: f64 = 0.3;
 

@@ -8,7 +8,7 @@ use feti_contact::qp::friction::{
 };
 use feti_contact::qp::{AcceptanceTest, Direct, Observer, Qp, StepReport};
 
-use crate::dense::{Dense, OfMatrices};
+use crate::friction::dense::{Dense, OfMatrices};
 
 pub struct Given {
     pub f: Dense,

@@ -5,7 +5,7 @@ use feti_contact::linalg::Matrix;
 use feti_contact::qp::friction::{FrictionSolution, FrictionStart, Node};
 use feti_contact::qp::Verdict;
 
-use crate::problem::{Given, Random};
+use crate::friction::problem::{Given, Random};
 
 /// A floating body on k nodes, pressed down by 1 and pushed along by `push`, and a spring across, which could press as much as friction
 /// needs.

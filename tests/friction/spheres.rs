@@ -9,7 +9,7 @@ use feti_contact::qp::friction::{
 };
 use feti_contact::qp::{Qp, Verdict};
 
-use crate::problem::Content;
+use crate::friction::problem::Content;
 
 const PI: f64 = std::f64::consts::PI;
 const MU: f64 = 0.3;

@@ -4,8 +4,8 @@ use feti_contact::linalg::Matrix;
 use feti_contact::qp::friction::{FrictionStart, Node};
 use feti_contact::qp::Verdict;
 
-use crate::enumeration::answers;
-use crate::problem::{Given, Random};
+use crate::friction::enumeration::answers;
+use crate::friction::problem::{Given, Random};
 
 fn matrix(entries: [[f64; 2]; 2]) -> Matrix {
     Matrix::from_fn(2, 2, |i, j| entries[i][j]).unwrap()

@@ -3,8 +3,8 @@
 use feti_contact::qp::friction::{friction, FrictionStart, Supported};
 use feti_contact::qp::Verdict;
 
-use crate::deck::Deck;
-use crate::problem::Content;
+use crate::friction::deck::Deck;
+use crate::friction::problem::Content;
 
 #[test]
 fn weak_supports_carry_what_friction_does_not_hold() {

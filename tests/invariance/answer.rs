@@ -4,7 +4,7 @@ use decks::small::{FacingSprings, SpringAndBlock};
 use decks::{Cube, Deck, Membrane, Moduli, Stack};
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 /// Decks whose answer is unique.
 pub fn decks() -> Vec<Deck> {

@@ -4,9 +4,9 @@
 use decks::random::Random;
 use decks::{Cube, Deck, Moduli, Stack};
 
-use crate::answer::Answer;
-use crate::hand_over;
-use crate::units::{in_units, in_units_of, with_rows_in_units};
+use crate::invariance::answer::Answer;
+use crate::invariance::units::{in_units, in_units_of, with_rows_in_units};
+use crate::support::hand_over;
 
 /// Stiffness, force and length.
 const UNITS: [[f64; 3]; 4] =

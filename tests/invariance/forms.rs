@@ -3,8 +3,8 @@
 use decks::{Body, Deck};
 use feti_contact::solver::{Modes, Problem, SparseInput, Storage};
 
-use crate::answer::{decks, Answer};
-use crate::hand_over;
+use crate::invariance::answer::{decks, Answer};
+use crate::support::hand_over;
 
 /// The part of K a storage keeps.
 fn kept(storage: Storage, i: usize, j: usize) -> bool {

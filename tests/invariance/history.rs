@@ -5,8 +5,8 @@ use decks::{Blocks, Cube, Deck, Glue};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Problem, RowKind, RowState};
 
-use crate::answer::{decks, Answer};
-use crate::hand_over;
+use crate::invariance::answer::{decks, Answer};
+use crate::support::hand_over;
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {

@@ -5,8 +5,8 @@ use decks::{Blocks, Cube, Deck};
 use feti_contact::error::Kind;
 use feti_contact::solver::Problem;
 
-use crate::answer::{decks, Answer};
-use crate::hand_over;
+use crate::invariance::answer::{decks, Answer};
+use crate::support::hand_over;
 
 fn with(deck: &Deck, kind: &str) -> Problem {
     let mut problem = hand_over::problem(deck).unwrap();

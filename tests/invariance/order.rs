@@ -3,7 +3,7 @@
 use decks::random::Random;
 use decks::{Deck, Rows};
 
-use crate::answer::{decks, Answer};
+use crate::invariance::answer::{decks, Answer};
 
 /// A random order of 0..n.
 fn shuffled(n: usize, random: &mut Random) -> Vec<usize> {

@@ -3,7 +3,7 @@
 use decks::random::Random;
 use decks::{Deck, Rows};
 
-use crate::answer::{decks, Answer};
+use crate::invariance::answer::{decks, Answer};
 
 /// K by `stiffness`, f by `force`, c and h by `length`.
 pub fn in_units(deck: &Deck, stiffness: f64, force: f64, length: f64) -> Deck {

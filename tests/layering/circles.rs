@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::source::{expanded, module_of, paths, test_ranges, words, Named, Renamed};
+use crate::layering::source::{expanded, module_of, paths, test_ranges, words, Named, Renamed};
 
 /// Of every folder the names it hands on, each with the module it comes from.
 type HandedOn = BTreeMap<Vec<String>, BTreeMap<String, Vec<String>>>;

@@ -9,7 +9,8 @@ use decks::yardstick::{reaction, Answer, Yardstick};
 use feti_contact::certificate::Certificate;
 use feti_contact::solver::RowKind;
 
-use crate::{hand_over, lies, number, right, CONDITION, PROBLEMS};
+use crate::liars::{lies, number, right, CONDITION, PROBLEMS};
+use crate::support::hand_over;
 
 /// `worst` of many answers.
 #[derive(Default)]

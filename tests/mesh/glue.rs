@@ -1,6 +1,6 @@
 //! Bodies of the host that share numbers of unknowns: glued, they are one body, and no row says so.
 
-use crate::bodies::{apart, blocks, solved, Model};
+use crate::mesh::bodies::{apart, blocks, solved, Model};
 use decks::mesh::Mesh;
 use feti_contact::error::Kind;
 use feti_contact::solver::{Problem, RowKind, RowsInput};

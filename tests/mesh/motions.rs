@@ -3,7 +3,7 @@
 use decks::mesh::Mesh;
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::bodies::{apart, give_rows, solved, Model};
+use crate::mesh::bodies::{apart, give_rows, solved, Model};
 
 /// Two blocks of 2 to 5 elements along each edge, of varied E, the lower one held at z = 0 or, for every other seed, at x = 0; and into
 /// how many pieces each is cut.

@@ -1,6 +1,6 @@
 //! How elements come: once each, in any order, pass by pass; what is refused, and that nothing is lost then.
 
-use crate::bodies::{apart, blocks, give_elements, solved};
+use crate::mesh::bodies::{apart, blocks, give_elements, solved};
 use feti_contact::error::Kind;
 use feti_contact::solver::{ElementStorage, Problem};
 

@@ -1,6 +1,6 @@
 //! Why a problem of cut bodies has no answer is told of the bodies of the host.
 
-use crate::bodies::{apart, blocks, solved, Model};
+use crate::mesh::bodies::{apart, blocks, solved, Model};
 use feti_contact::error::{Kind, Proof};
 use feti_contact::solver::{RowKind, RowsInput};
 

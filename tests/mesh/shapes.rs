@@ -1,6 +1,6 @@
 //! Elements and bodies of other shapes than cubes.
 
-use crate::bodies::{apart, solved, Model};
+use crate::mesh::bodies::{apart, solved, Model};
 use decks::mesh::Mesh;
 use feti_contact::solver::Problem;
 

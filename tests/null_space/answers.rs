@@ -2,9 +2,9 @@
 
 use feti_contact::solver::{Modes, Outcome, RowKind};
 
-use crate::digits::{in_single_precision, printed, quads};
-use crate::registered;
-use crate::rows::add_rows;
+use crate::null_space::digits::{in_single_precision, printed, quads};
+use crate::null_space::registered;
+use crate::null_space::rows::add_rows;
 
 /// A block pressed on the ground, held sideways at one dof: the forces on the ground are those of the stiffness of all
 /// digits but for what its rounding changes.
@@ -30,7 +30,7 @@ fn forces_on_a_floating_block_of_few_digits_are_those_of_all_digits() {
             0.0,
         );
         let side = [vec![(2 * block.node([0, 0, 0]), 1.0)]];
-        crate::rows::add_equalities(&mut problem, &side);
+        crate::null_space::rows::add_equalities(&mut problem, &side);
         let report = problem.solve().unwrap();
         let doubtful = problem.findings().unwrap().doubtful.clone();
         (

@@ -4,9 +4,9 @@ use decks::{Block, Csr};
 use feti_contact::error::Kind;
 use feti_contact::solver::{LogLevel, Modes, Origin, Problem};
 
-use crate::bodies::{chain, cube};
-use crate::digits::{in_single_precision, printed, quads};
-use crate::{lines, registered, warnings};
+use crate::null_space::bodies::{chain, cube};
+use crate::null_space::digits::{in_single_precision, printed, quads};
+use crate::null_space::{lines, registered, warnings};
 
 /// The body with the coordinates of its nodes, moved from where they are.
 fn placed(k: &Csr, block: &Block, moved: impl Fn(usize, usize) -> f64) -> Problem {

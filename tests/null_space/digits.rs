@@ -5,8 +5,8 @@ use decks::{Block, Csr};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Digits, Doubt};
 
-use crate::bodies::{assembled, bar, chain, cube, held, membrane};
-use crate::{assert_dimension, left_over, registered, warnings};
+use crate::null_space::bodies::{assembled, bar, chain, cube, held, membrane};
+use crate::null_space::{assert_dimension, left_over, registered, warnings};
 
 pub fn printed(k: &Csr, digits: usize) -> Csr {
     let round = |v: &f64| rounded_to(*v, digits);

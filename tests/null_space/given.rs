@@ -3,9 +3,9 @@
 use feti_contact::error::{Error, Kind};
 use feti_contact::solver::{Modes, Problem, SparseInput, Storage};
 
-use crate::bodies::cube;
-use crate::digits::quads;
-use crate::registered;
+use crate::null_space::bodies::cube;
+use crate::null_space::digits::quads;
+use crate::null_space::registered;
 
 /// A spring 1 between two unknowns, the first held by another one.
 fn spring(held: f64) -> Result<Problem, Error> {

@@ -4,7 +4,7 @@ use decks::{Block, Csr};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Modes, Outcome, Problem, RowKind, RowsInput, Storage};
 
-use crate::registered;
+use crate::null_space::registered;
 
 /// Contact rows of these entries, with one gap.
 pub fn add_rows(problem: &mut Problem, rows: &[Vec<(usize, f64)>], gap: f64) {

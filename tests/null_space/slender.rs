@@ -4,8 +4,8 @@ use decks::Csr;
 use feti_contact::error::Kind;
 use feti_contact::solver::{Modes, Outcome, Problem, RowKind, RowsInput};
 
-use crate::registered;
-use crate::tidy::beam;
+use crate::null_space::registered;
+use crate::null_space::tidy::beam;
 
 /// Of the springs under the nodes, which push and do not pull.
 const SPRING: f64 = 1e5;

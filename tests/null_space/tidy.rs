@@ -2,9 +2,9 @@
 
 use decks::Csr;
 
-use crate::bodies::chain;
-use crate::digits::printed;
-use crate::{registered, warnings};
+use crate::null_space::bodies::chain;
+use crate::null_space::digits::printed;
+use crate::null_space::{registered, warnings};
 
 /// 4 x 4 stiffness of an Euler beam of length h: deflection and slope at either end.
 fn element(bending: f64, h: f64) -> Csr {

@@ -5,8 +5,9 @@ use std::sync::atomic::Ordering;
 use feti_contact::error::{Error, Kind};
 use feti_contact::solver::{Modes, Problem};
 
-use crate::host::{Form, Host};
-use crate::{answer, cube, hand_over, hosts_of, solved};
+use crate::operator::host::{Form, Host};
+use crate::operator::{answer, cube, hosts_of, solved};
+use crate::support::hand_over;
 
 const BODY: usize = 7;
 

@@ -1,6 +1,6 @@
 //! The eight reference cases of the paper's problems by its methods, to 1e-4.
 
-use crate::case::{difference, Case};
+use crate::reference::case::{difference, Case};
 use feti_contact::solver::{Modes, Outcome, Report, RowKind, Storage};
 
 pub const CASES: [&str; 8] =

@@ -2,8 +2,8 @@
 //! again by rows H u = 0 with free multipliers. The four copies of the node in the middle may be joined by three rows or by
 //! all six.
 
-use crate::case::{difference, Case};
-use crate::cases::METHODS;
+use crate::paper::cases::METHODS;
+use crate::reference::case::{difference, Case};
 use feti_contact::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
 const LINE: usize = 21;

@@ -1,6 +1,6 @@
 //! Eigenvalues of small symmetric matrices by Jacobi rotations, independent of the library.
 
-use crate::dense::Dense;
+use crate::qp::dense::Dense;
 
 /// Ascending.
 pub fn eigenvalues(matrix: &Dense) -> Vec<f64> {

@@ -1,7 +1,7 @@
 //! (14) to (18) against dense linear algebra.
 
-use crate::case::Case;
-use crate::dense::{dot, norm, solve, Dense};
+use crate::qp::dense::{dot, norm, solve, Dense};
+use crate::reference::case::Case;
 use feti_contact::solver::{Modes, Problem, RowKind};
 
 /// K_p, both triangles.

@@ -1,7 +1,7 @@
 //! Where the paper's method fails as printed: it says so, and never calls a wrong answer solved.
 
-use crate::case::{difference, Case};
-use crate::cases::METHODS;
+use crate::paper::cases::METHODS;
+use crate::reference::case::{difference, Case};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Outcome, Problem, RowKind};
 

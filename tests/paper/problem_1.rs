@@ -1,6 +1,6 @@
 //! Problem 1 in the configuration that gives the printed figures: 3 outer, 23 inner, 34 products.
 
-use crate::case::Case;
+use crate::reference::case::Case;
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 
 /// The node (x, y) = (2, 1) of the floating membrane.

@@ -1,7 +1,7 @@
 //! The table of docs/paper.md: the runs of `make paper` by the paper's method, and what the handbook says of them.
 
-use crate::problems::{Figure, Problem, PROBLEMS};
-use crate::run::by_paper;
+use crate::paper::problems::{Figure, Problem, PROBLEMS};
+use crate::paper::run::by_paper;
 
 fn counts(problem: &Problem) -> [(&'static str, &Figure); 5] {
     let f = &problem.figures;

@@ -7,8 +7,8 @@ use feti_contact::linalg::Csr;
 use feti_contact::qp::Qp;
 use paper::{PaperRule, Proportioning, Quadratic, Variant};
 
-use crate::dense::{dot, norm, solve, Dense};
-use crate::eigenvalues::eigenvalues;
+use crate::paper::eigenvalues::eigenvalues;
+use crate::qp::dense::{dot, norm, solve, Dense};
 
 const VARIANTS: [Variant; 3] = [Variant::Feasible, Variant::Monotone, Variant::Extrapolating];
 /// |g^P| of a face solved to rounding, against |b|.

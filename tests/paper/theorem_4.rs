@@ -7,9 +7,9 @@
 //!
 //! Without full row rank, as on Problem 2 with all six rigid modes, the rank takes the place of m.
 
-use crate::case::Case;
-use crate::dense::Dense;
-use crate::eigenvalues::eigenvalues;
+use crate::paper::eigenvalues::eigenvalues;
+use crate::qp::dense::Dense;
+use crate::reference::case::Case;
 
 /// A = B K+ B' of the library, and D = R'B' in the units of the data.
 fn dual(name: &str) -> (Dense, Dense) {

@@ -4,7 +4,7 @@ use decks::{masonry, Deck};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 /// Separate bodies, and the same bodies in one matrix.
 fn both(deck: &Deck) -> [Problem; 2] {

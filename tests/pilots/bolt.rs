@@ -4,8 +4,8 @@
 use decks::{Block, Csr, Rows};
 use feti_contact::solver::Problem;
 
-use crate::elastic::{add, add_rows, hung, Pilot};
-use crate::{assert_near, forces, solved};
+use crate::pilots::elastic::{add, add_rows, hung, Pilot};
+use crate::pilots::{assert_near, forces, solved};
 
 const PRETENSION: f64 = 100.0;
 

@@ -2,7 +2,7 @@
 
 use feti_contact::solver::{Problem, RowKind};
 
-use crate::{add_body, add_rows, assert_a_shift_is_refused, assert_near, forces, solved, DUMMY};
+use crate::pilots::{add_body, add_rows, assert_a_shift_is_refused, assert_near, forces, solved, DUMMY};
 
 const K: f64 = 1e6;
 

@@ -2,7 +2,7 @@
 
 use feti_contact::solver::{Problem, RowKind};
 
-use crate::{add_body, add_rows, assert_near, forces, solved};
+use crate::pilots::{add_body, add_rows, assert_near, forces, solved};
 
 #[test]
 fn a_spring_is_carried_while_rows_hold_it() {

@@ -4,7 +4,7 @@
 use decks::{Block, Csr, Rows};
 use feti_contact::solver::{Problem, RowKind, SparseInput, Storage};
 
-use crate::{assert_near, forces, solved};
+use crate::pilots::{assert_near, forces, solved};
 
 const E: f64 = 1e6;
 
@@ -75,7 +75,7 @@ pub fn add_rows(problem: &mut Problem, contact: &Rows, equalities: &Rows) {
     for (kind, rows) in [(RowKind::Inequality, contact), (RowKind::Equality, equalities)] {
         let all: Vec<Vec<(usize, f64)>> = (0..rows.rhs.len()).map(|i| rows.matrix.row(i).collect()).collect();
         let all: Vec<_> = all.iter().zip(&rows.rhs).map(|(row, rhs)| (&row[..], *rhs)).collect();
-        crate::add_rows(problem, kind, &all);
+        crate::pilots::add_rows(problem, kind, &all);
     }
 }
 

@@ -3,7 +3,7 @@
 use feti_contact::error::Kind;
 use feti_contact::solver::{Problem, RowKind};
 
-use crate::{add_body, add_rows, assert_near, forces, solved, DUMMY};
+use crate::pilots::{add_body, add_rows, assert_near, forces, solved, DUMMY};
 
 /// A bar k between two nodes, the first on a support k, and pilots kp with the load F.
 fn bar_and_pilots(k: f64, pilots: usize, kp: f64, force: f64) -> Problem {

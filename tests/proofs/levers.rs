@@ -4,7 +4,8 @@ use decks::Body;
 use feti_contact::error::Kind;
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::{body, deck, hand_over, springs};
+use crate::proofs::{body, deck, springs};
+use crate::support::hand_over;
 
 /// Two unknowns x, y that move rigidly, each a pair of equal ones joined by a spring.
 fn free_point(load: [f64; 2]) -> Body {

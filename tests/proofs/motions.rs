@@ -6,7 +6,7 @@ use decks::random::Random;
 use decks::{Block, Csr, Deck};
 use feti_contact::error::{Error, Kind, Proof};
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 /// |K v| against |K||v|, the worst unknown.
 fn strained(k: &Csr, v: &[f64]) -> f64 {

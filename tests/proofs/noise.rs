@@ -5,7 +5,7 @@ use feti_contact::solver::{
     FrictionInput, Modes, Outcome, Problem, Report, RowKind, RowsInput, SparseInput, Storage,
 };
 
-use crate::warnings::told;
+use crate::support::warnings::told;
 
 /// `.3 - (.1 + .2)`
 const RESIDUE: f64 = -1.0 / (1u64 << 54) as f64;

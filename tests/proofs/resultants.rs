@@ -5,7 +5,7 @@ use decks::{Block, Body, Deck};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Outcome, Problem};
 
-use crate::hand_over;
+use crate::support::hand_over;
 
 /// 4 x 3 quads, one corner at `offset` along both axes; the load is the thermal one with so many digits, and `pull` times its
 /// size on top, along x.
@@ -82,7 +82,7 @@ fn up_to_1e_10_of_the_load_is_solved_up_to_1e_7_is_marginal_and_more_is_named() 
 /// Beside a body whose load is 1e9 times as large and held: shares are of the load of the block that is free.
 #[test]
 fn a_small_body_that_nothing_holds_is_named_beside_one_with_a_large_load() {
-    use crate::{body, deck, springs};
+    use crate::proofs::{body, deck, springs};
     let held = body(springs(2, &[(0, 1, 1.0)], &[(0, 1.0)]), vec![], vec![0.0, 1e9]);
     let free = body(springs(2, &[(0, 1, 1.0)], &[]), vec![vec![1.0, 1.0]], vec![1.0, -0.5]);
     // a row that the load opens
@@ -94,7 +94,7 @@ fn a_small_body_that_nothing_holds_is_named_beside_one_with_a_large_load() {
 /// A free pair of springs whose load is in balance but for 1e-12 of it, beside a wall a million deformations away.
 #[test]
 fn what_rounding_leaves_of_a_load_drives_no_body_to_a_wall_far_away() {
-    use crate::{body, deck, springs};
+    use crate::proofs::{body, deck, springs};
     for unit in [1.0, 1e-9, 1e11] {
         let stiffness = springs(3, &[(0, 1, unit), (1, 2, unit)], &[]);
         let load = vec![-unit, 0.0, unit * (1.0 + 1e-12)];

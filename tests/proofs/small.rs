@@ -4,7 +4,8 @@ use decks::random::Random;
 use decks::{Csr, Deck};
 use feti_contact::solver::Outcome;
 
-use crate::{body, hand_over};
+use crate::proofs::body;
+use crate::support::hand_over;
 
 /// How a problem is made difficult.
 #[derive(Clone, Copy, Debug)]

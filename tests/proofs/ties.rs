@@ -3,7 +3,8 @@
 use feti_contact::error::Kind;
 use feti_contact::solver::{Outcome, RowKind};
 
-use crate::{body, deck, hand_over, springs};
+use crate::proofs::{body, deck, springs};
+use crate::support::hand_over;
 
 const A: f64 = 0.229;
 const B: f64 = 0.0264;

@@ -2,7 +2,8 @@
 
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::{body, deck, hand_over, springs};
+use crate::proofs::{body, deck, springs};
+use crate::support::hand_over;
 
 /// A spring column on the ground and a floating pair, glued in redundant ways: supports as equality rows.
 fn glued() -> Problem {

@@ -3,8 +3,8 @@
 use decks::random::Random;
 use feti_contact::qp::Verdict;
 
-use crate::dense::{dot, norm, Dense};
-use crate::program::Program;
+use crate::qp::dense::{dot, norm, Dense};
+use crate::qp::program::Program;
 
 type Fault = Result<(), String>;
 

@@ -5,8 +5,8 @@
 use decks::random::Random;
 use feti_contact::qp::Verdict;
 
-use crate::dense::{dot, independent_rows, norm, solve, Dense};
-use crate::program::Program;
+use crate::qp::dense::{dot, independent_rows, norm, solve, Dense};
+use crate::qp::program::Program;
 
 /// An optimal x with its multiplier, `None` when there is no feasible point.
 pub fn by_enumeration(program: &Program) -> Option<(Vec<f64>, Vec<f64>)> {

@@ -4,8 +4,8 @@ use decks::random::Random;
 use feti_contact::error::Result;
 use feti_contact::qp::{Preconditioner, Verdict};
 
-use crate::dense::{solve, Dense};
-use crate::program::Program;
+use crate::qp::dense::{solve, Dense};
+use crate::qp::program::Program;
 
 /// `A_FF^-1` on the rows that are not held.
 struct Exact(Dense);

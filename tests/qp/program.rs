@@ -7,7 +7,7 @@ use feti_contact::qp::{
     minimise, AcceptanceTest, Limits, Observer, Preconditioner, Qp, Solution, StepReport, Verdict,
 };
 
-use crate::dense::{dot, norm, Dense};
+use crate::qp::dense::{dot, norm, Dense};
 
 #[derive(Clone, Debug)]
 pub struct Program {

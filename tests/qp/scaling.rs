@@ -3,8 +3,8 @@
 use decks::random::Random;
 use feti_contact::qp::{Solution, Verdict};
 
-use crate::dense::Dense;
-use crate::program::Program;
+use crate::qp::dense::Dense;
+use crate::qp::program::Program;
 
 /// A floating program that needs all kinds of steps.
 fn program(seed: u64) -> Program {

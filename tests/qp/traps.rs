@@ -5,8 +5,8 @@ use decks::random::Random;
 use feti_contact::error::Result;
 use feti_contact::qp::{minimise, Observer, StepKind, StepReport, Verdict};
 
-use crate::dense::{dot, norm, Dense};
-use crate::program::Program;
+use crate::qp::dense::{dot, norm, Dense};
+use crate::qp::program::Program;
 
 fn assert_near(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len());

@@ -9,8 +9,8 @@ use feti_contact::qp::{
     minimise, AcceptanceTest, Limits, Observer, Qp, Solution, StepKind, StepReport, Verdict,
 };
 
-use crate::dense::Dense;
-use crate::program::Program;
+use crate::qp::dense::Dense;
+use crate::qp::program::Program;
 
 /// A, for so many products.
 struct Limited<'a> {

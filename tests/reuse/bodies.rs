@@ -3,7 +3,8 @@
 use decks::{Cube, Deck, Moduli};
 use feti_contact::solver::Problem;
 
-use crate::{answer, hand_over, spent};
+use crate::reuse::{answer, spent};
+use crate::support::hand_over;
 
 /// A cube of eight subdomains of one mesh, glued, on an obstacle.
 fn cube(moduli: Moduli) -> Deck {

@@ -5,7 +5,7 @@ use std::ptr::NonNull;
 use feti_contact::error::Kind;
 use feti_contact::solver::{Borrowed, Columns, Modes, Problem};
 
-use crate::{assert_near, spent};
+use crate::reuse::{assert_near, spent};
 
 const PTR: [usize; 3] = [0, 1, 3];
 const COL: [i64; 3] = [0, 0, 1];

@@ -3,7 +3,8 @@
 use decks::{Blocks, Deck, Rows};
 use feti_contact::solver::{Problem, RowKind};
 
-use crate::{answer, hand_over, spent, touches};
+use crate::reuse::{answer, spent, touches};
+use crate::support::hand_over;
 
 fn deck() -> Deck {
     Blocks { elements: 8, young: 1.0 }.build()

@@ -4,7 +4,8 @@ use decks::{Blocks, Deck};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Modes, Problem, RowKind, SparseInput, Storage};
 
-use crate::{answer, assert_near, hand_over, spent};
+use crate::reuse::{answer, assert_near, spent};
+use crate::support::hand_over;
 
 fn deck() -> Deck {
     Blocks { elements: 4, young: 1.0 }.build()
@@ -38,7 +39,7 @@ fn new_loads_and_gaps_cost_no_analysis_no_factorisation_and_no_column() {
     let deck = deck();
     let mut problem = hand_over::problem(&deck).unwrap();
     let mut before = [0; 4];
-    assert_eq!(spent(&mut problem, &mut before), [2, 2, crate::touches(&deck), 0]);
+    assert_eq!(spent(&mut problem, &mut before), [2, 2, crate::reuse::touches(&deck), 0]);
     let load: Vec<f64> = deck.bodies[1].load.iter().map(|f| 1.3 * f).collect();
     problem.set_load(1, &load).unwrap();
     assert_eq!(spent(&mut problem, &mut before), [0; 4]);
@@ -76,7 +77,7 @@ fn the_same_matrix_and_the_same_null_space_again_cost_nothing() {
         let (n, modes) = (body.dofs(), body.modes());
         problem.set_null_space(p, n, modes.len(), &modes.concat(), n, Modes::Exact).unwrap();
     }
-    assert_eq!(spent(&mut problem, &mut before), [0, 0, 0, crate::touches(&deck)]);
+    assert_eq!(spent(&mut problem, &mut before), [0, 0, 0, crate::reuse::touches(&deck)]);
     assert!(answer(&problem) == first, "bits differ");
 }
 

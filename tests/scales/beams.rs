@@ -6,7 +6,8 @@ use decks::random::Random;
 use decks::{Body, Csr, Deck};
 use feti_contact::solver::Outcome;
 
-use crate::{answer, hand_over, Answer};
+use crate::scales::{answer, Answer};
+use crate::support::hand_over;
 
 /// A beam of unit elements with bending stiffness `ei` under its weight and a point load on one third, over one row per node
 /// with these gaps and compliances.

@@ -3,8 +3,8 @@
 
 use decks::{Block, Blocks, Deck};
 
-use crate::free::{blocks, held, inner, least, SEED};
-use crate::{difference, energy, largest, problem, solved, Claims};
+use crate::scales::free::{blocks, held, inner, least, SEED};
+use crate::scales::{difference, energy, largest, problem, solved, Claims};
 
 const ELEMENTS: usize = 8;
 

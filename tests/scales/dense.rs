@@ -2,7 +2,7 @@
 
 use decks::Deck;
 
-use crate::largest;
+use crate::scales::largest;
 
 /// Entries by rows.
 pub struct Dense {
@@ -66,11 +66,11 @@ impl Factors {
         let mut x: Vec<f64> = self.rows.iter().map(|i| b[*i]).collect();
         for i in 0..n {
             let row = self.lu.row(self.rows[i]);
-            x[i] -= crate::dot(&row[..i], &x[..i]);
+            x[i] -= crate::scales::dot(&row[..i], &x[..i]);
         }
         for i in (0..n).rev() {
             let row = self.lu.row(self.rows[i]);
-            x[i] = (x[i] - crate::dot(&row[i + 1..], &x[i + 1..])) / row[i];
+            x[i] = (x[i] - crate::scales::dot(&row[i + 1..], &x[i + 1..])) / row[i];
         }
         x
     }
@@ -150,7 +150,7 @@ pub fn dual_optimum(f: &Dense, over: &[f64], mut closed: Vec<bool>) -> Vec<f64> 
             if closed[*i] {
                 lambda[*i] < -1e-12 * force
             } else {
-                over[*i] - crate::dot(f.row(*i), &lambda) > 1e-12 * length
+                over[*i] - crate::scales::dot(f.row(*i), &lambda) > 1e-12 * length
             }
         };
         match (0..f.n).find(wrong) {
@@ -166,11 +166,12 @@ pub fn dual_optimum(f: &Dense, over: &[f64], mut closed: Vec<bool>) -> Vec<f64> 
 fn the_reference_finds_the_face_of_two_springs_from_any_other() {
     use decks::small::Obstacle;
     let springs = [4.0, 1.0].map(|force| Obstacle { spring: 3.0, force, gap: 0.5 }.build().deck);
-    let deck = crate::plane::side_by_side(&springs);
+    let deck = crate::scales::plane::side_by_side(&springs);
     for face in [[false, false], [true, true], [true, false], [false, true]] {
         let (u, lambda) = optimum(&deck, face.to_vec());
         assert!(
-            crate::distance(&u, &[0.5, 1.0 / 3.0]) < 1e-15 && crate::distance(&lambda, &[2.5, 0.0]) < 1e-14
+            crate::scales::distance(&u, &[0.5, 1.0 / 3.0]) < 1e-15
+                && crate::scales::distance(&lambda, &[2.5, 0.0]) < 1e-14
         );
     }
 }

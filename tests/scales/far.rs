@@ -3,8 +3,9 @@
 use decks::{Deck, Rows};
 use feti_contact::solver::{Problem, RowKind};
 
-use crate::plane::{pressed, under_a_wall};
-use crate::{difference, distance, hand_over, largest, problem, solved, Claims};
+use crate::scales::plane::{pressed, under_a_wall};
+use crate::scales::{difference, distance, largest, problem, solved, Claims};
+use crate::support::hand_over;
 
 /// Gaps of the far row, length; the displacements are about 1e-2.
 const GAPS: [f64; 6] = [1e8, 1e12, 1e20, 1e30, 1e300, f64::INFINITY];

@@ -5,7 +5,7 @@ use decks::random::Random;
 use decks::{Blocks, Deck};
 use feti_contact::solver::{Modes, Problem};
 
-use crate::{add, difference, dot, energy, largest, problem, solved, Answer, Claims};
+use crate::scales::{add, difference, dot, energy, largest, problem, solved, Answer, Claims};
 
 /// Slides along x and y, and the spin about z, among the six modes of a block.
 const FREE: [usize; 3] = [0, 1, 3];

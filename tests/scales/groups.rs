@@ -4,8 +4,8 @@ use decks::Deck;
 use feti_contact::error::Kind;
 use feti_contact::solver::{Problem, Report, RowKind};
 
-use crate::plane::{pressed, scaled, side_by_side, under_a_wall};
-use crate::{difference, problem, solved, Answer, Claims};
+use crate::scales::plane::{pressed, scaled, side_by_side, under_a_wall};
+use crate::scales::{difference, problem, solved, Answer, Claims};
 
 /// A floating block on a held one, and another pair of another size: 13 and 9 contact rows.
 fn pair(stiffness: f64, load: f64) -> [Deck; 2] {

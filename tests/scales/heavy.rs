@@ -2,7 +2,7 @@
 
 use decks::{Body, Csr, Deck};
 
-use crate::{problem, solved};
+use crate::scales::{problem, solved};
 
 /// Stiffness and loads of the heavy body; those of the light one.
 const HEAVY: (f64, f64) = (1e8, 1e9 / 3.0);

@@ -2,7 +2,7 @@
 
 use feti_contact::solver::{Modes, Problem, RowKind, RowsInput, SparseInput, Storage};
 
-use crate::solved;
+use crate::scales::solved;
 
 const SIDE: usize = 450;
 const NODES: usize = SIDE * SIDE;

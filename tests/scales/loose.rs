@@ -2,7 +2,7 @@
 
 use decks::{masonry, Deck};
 
-use crate::{difference, problem, Answer, Claims};
+use crate::scales::{difference, problem, Answer, Claims};
 
 /// K, f and all lengths in other units.
 fn in_units(deck: &Deck, force: f64, length: f64) -> Deck {

@@ -5,9 +5,9 @@ use decks::random::Random;
 use decks::{Body, Csr, Deck, Rows};
 use feti_contact::solver::{Outcome, Problem};
 
-use crate::dense::{dual_optimum, optimum, Dense};
-use crate::plane::under_a_wall_of;
-use crate::{answer, difference, dot, largest, problem, solved, Claims};
+use crate::scales::dense::{dual_optimum, optimum, Dense};
+use crate::scales::plane::under_a_wall_of;
+use crate::scales::{answer, difference, dot, largest, problem, solved, Claims};
 
 const SEEDS: u64 = 1000;
 /// What a force may be wrong by, against the largest force on each body that its row touches.

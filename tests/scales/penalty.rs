@@ -4,8 +4,8 @@
 use decks::{Deck, Rows};
 use feti_contact::solver::Problem;
 
-use crate::plane::{not_held, under_a_wall};
-use crate::{add, difference, problem, solved, Answer, Claims};
+use crate::scales::plane::{not_held, under_a_wall};
+use crate::scales::{add, difference, problem, solved, Answer, Claims};
 
 const PENALTY: f64 = 1e20;
 

@@ -4,8 +4,9 @@ use decks::small::Obstacle;
 use decks::{Csr, Deck};
 use feti_contact::error::Kind;
 
-use crate::plane::{pressed, under_a_wall};
-use crate::{answer, distance, hand_over, problem, Claims};
+use crate::scales::plane::{pressed, under_a_wall};
+use crate::scales::{answer, distance, problem, Claims};
+use crate::support::hand_over;
 
 /// Springs [2 -1; -1 2] under the loads `load`: a body of two unknowns.
 fn two_unknowns(load: [f64; 2]) -> Deck {

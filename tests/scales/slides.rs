@@ -5,8 +5,8 @@ use decks::random::Random;
 use decks::{Block, Body, Csr, Deck};
 use feti_contact::solver::{Outcome, Problem};
 
-use crate::warnings::told;
-use crate::{answer, difference, largest, problem, solved};
+use crate::scales::{answer, difference, largest, problem, solved};
+use crate::support::warnings::told;
 
 /// A block (x, y_1, y_2) with a spring between y_1 and y_2 that presses with 1 and 1.3 on rows `t_i x - y_i <= 0`. For t = 0
 /// the forces are 1 and 1.3, and x is undetermined.

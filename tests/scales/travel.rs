@@ -4,8 +4,8 @@ use decks::small::Obstacle;
 use decks::{Body, Csr, Deck};
 use feti_contact::solver::Problem;
 
-use crate::plane::pressed;
-use crate::{add, difference, distance, dot, largest, problem, solved, Answer, Claims};
+use crate::scales::plane::pressed;
+use crate::scales::{add, difference, distance, dot, largest, problem, solved, Answer, Claims};
 
 /// Length; the blocks deform by about 1e-2.
 const TRAVELS: [f64; 3] = [0.0, 100.0, 1e4];

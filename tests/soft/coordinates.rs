@@ -4,11 +4,11 @@ use decks::{Body, Deck};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Modes, Origin, Problem, RowKind, SparseInput, Storage};
 
-use crate::driven::{closed, narrow, with_drive};
-use crate::{
-    add_diagonal, column, difference, given, hand_over, oracle, rounded, solved, with_springs, Solved,
-    ELEMENTS,
+use crate::soft::driven::{closed, narrow, with_drive};
+use crate::soft::{
+    add_diagonal, column, difference, given, oracle, rounded, solved, with_springs, Solved, ELEMENTS,
 };
+use crate::support::hand_over;
 
 /// The deck with the coordinates of its unknowns, moved by up to `moved`, and nothing else about its motions.
 fn placed(deck: &Deck, soft: bool, moved: f64) -> Problem {

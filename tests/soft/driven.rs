@@ -5,10 +5,10 @@ use decks::Deck;
 use feti_contact::error::Kind;
 use feti_contact::solver::{Modes, Problem, RowKind, RowsInput, Storage};
 
-use crate::{
-    add_diagonal, assert_same_bits_for_any_threads, column_on, difference, given, hand_over, oracle, solved,
-    ELEMENTS,
+use crate::soft::{
+    add_diagonal, assert_same_bits_for_any_threads, column_on, difference, given, oracle, solved, ELEMENTS,
 };
+use crate::support::hand_over;
 
 pub fn narrow(blocks: usize) -> Deck {
     column_on(blocks, 3..=5, 1e-3)

@@ -4,7 +4,7 @@
 use decks::yardstick::Answer;
 use decks::Deck;
 
-use crate::face;
+use crate::support::face;
 
 /// On the closed contact rows and the equality rows; fails where the signs refute the rows.
 pub fn solve(deck: &Deck, closed: &[usize]) -> Result<Answer, String> {

@@ -6,7 +6,7 @@ use decks::{Block, Deck};
 use feti_contact::error::{Error, Kind, Proof};
 use feti_contact::solver::{Modes, Outcome, RowKind};
 
-use crate::{add_diagonal, difference, given};
+use crate::soft::{add_diagonal, difference, given};
 
 /// Problems of the ordinary run; the variable BATTERY asks for more, BATTERY_SEED for others.
 const PROBLEMS: u64 = 200;

@@ -3,7 +3,7 @@
 use decks::Deck;
 use feti_contact::solver::{Modes, Problem};
 
-use crate::{add_diagonal, column_on, difference, given, solved, with_springs, Solved, ELEMENTS};
+use crate::soft::{add_diagonal, column_on, difference, given, solved, with_springs, Solved, ELEMENTS};
 
 /// A column with springs, and one that is driven at the top corners.
 fn decks() -> [Deck; 2] {

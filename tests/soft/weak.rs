@@ -4,10 +4,11 @@ use decks::random::Random;
 use decks::{masonry, Deck, Rows};
 use feti_contact::solver::{Modes, Outcome};
 
-use crate::{
-    add_diagonal, assert_same_bits_for_any_threads, column, column_on, difference, given, hand_over, oracle,
-    rounded, solved, with_springs, Solved, ELEMENTS,
+use crate::soft::{
+    add_diagonal, assert_same_bits_for_any_threads, column, column_on, difference, given, oracle, rounded,
+    solved, with_springs, Solved, ELEMENTS,
 };
+use crate::support::hand_over;
 
 /// Shares of the largest K_ii, by decades.
 fn decades() -> impl Iterator<Item = f64> {

@@ -1,6 +1,6 @@
 //! The reference cases through the Rust interface: real matrices with solutions known to 1e-12.
 
-mod case;
+pub mod case;
 
 use case::{difference, Case, Hint, CASES};
 use feti_contact::solver::{Outcome, RowKind};

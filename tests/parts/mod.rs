@@ -1,11 +1,10 @@
 //! One K for several bodies: every connected component of a matrix is solved as a body of its own.
 
 mod directions;
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod loose;
 mod queries;
 
+use crate::support::hand_over;
 use std::time::Instant;
 
 use decks::rubbing::{self, Rubbing};

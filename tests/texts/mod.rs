@@ -1,8 +1,6 @@
 //! A refusal says what the library knows about it.
 
-#[path = "support/hand_over.rs"]
-mod hand_over;
-
+use crate::support::hand_over;
 use std::sync::{Arc, Mutex};
 
 use decks::Blocks;

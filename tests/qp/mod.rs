@@ -1,7 +1,7 @@
 //! The quadratic programs of the dual on small dense matrices, without a body.
 
 mod certificates;
-mod dense;
+pub mod dense;
 mod enumeration;
 mod preconditioned;
 mod program;

@@ -3,10 +3,9 @@
 
 mod by_hand;
 mod changes;
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod springs;
 
+use crate::support::hand_over;
 use decks::{Body, Csr, Deck};
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 

@@ -1,14 +1,8 @@
 //! The paper: its problems by its methods, its theorems, its formulas against dense linear algebra, its numbers in
 //! the sources.
 
-#[allow(dead_code)]
-#[path = "../reference/case.rs"]
-mod case;
 mod cases;
 mod decomposition;
-#[allow(dead_code)]
-#[path = "../qp/dense.rs"]
-mod dense;
 mod eigenvalues;
 mod equations;
 mod failures;
@@ -23,3 +17,5 @@ mod run;
 mod table;
 mod theorem_2;
 mod theorem_4;
+
+use crate::reference::case;

@@ -13,15 +13,12 @@
 mod column;
 mod coordinates;
 mod driven;
-#[path = "../support/face.rs"]
-mod face;
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod oracle;
 mod random;
 mod units;
 mod weak;
 
+use crate::support::hand_over;
 use decks::{Block, Body, Deck};
 use feti_contact::error::Result;
 use feti_contact::solver::{Modes, Outcome, Problem, RowKind};

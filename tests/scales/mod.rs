@@ -23,8 +23,6 @@ mod dense;
 mod far;
 mod free;
 mod groups;
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod heavy;
 mod long;
 mod loose;
@@ -34,9 +32,8 @@ mod plane;
 mod presolve;
 mod slides;
 mod travel;
-#[path = "../support/warnings.rs"]
-mod warnings;
 
+use crate::support::hand_over;
 use decks::Deck;
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 

@@ -2,11 +2,10 @@
 //! them and accept every right one. LIARS asks for another number of problems, LIARS_SEED for another first seed.
 
 mod figures;
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod lies;
 mod limits;
 
+use crate::support::hand_over;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::sync::Mutex;

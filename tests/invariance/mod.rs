@@ -4,8 +4,6 @@
 mod answer;
 mod factors;
 mod forms;
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod history;
 mod operators;
 mod order;

@@ -1,8 +1,5 @@
 //! Nothing is computed twice: the counters of the report say what a change of the data costs.
 
-#[path = "../support/hand_over.rs"]
-mod hand_over;
-
 mod bodies;
 mod borrowed;
 mod rows;

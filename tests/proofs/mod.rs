@@ -11,8 +11,6 @@
 //! | [`small`] | small problems on which the methods for large ones give up |
 //! | [`unloading`] | loads that vanish |
 
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod levers;
 mod motions;
 mod noise;
@@ -20,8 +18,6 @@ mod resultants;
 mod small;
 mod ties;
 mod unloading;
-#[path = "../support/warnings.rs"]
-mod warnings;
 
 use decks::{Csr, Deck, Rows};
 

@@ -7,14 +7,10 @@ mod drawn;
 mod driven;
 mod enumeration;
 mod equal_rows;
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod idle;
 mod invariance;
 mod judge;
 mod last_iterations;
-#[path = "../support/rungs.rs"]
-mod rungs;
 mod slides;
 mod space;
 mod steps;

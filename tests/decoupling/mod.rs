@@ -1,8 +1,6 @@
 //! Equality rows are recombined and contact rows cleared of them inside; the host meets its own rows everywhere.
 
-#[path = "../support/hand_over.rs"]
-mod hand_over;
-
+use crate::support::hand_over;
 use decks::{Body, Csr, Cube, Deck, Glue, Moduli};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};

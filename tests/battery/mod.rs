@@ -2,21 +2,16 @@
 //! by hand, bodies that all but float, and decks of modest size: what a whole solve must find.
 
 mod bits;
-#[path = "../support/face.rs"]
-mod face;
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod hard;
 mod history;
 mod marginal;
 mod modest;
 mod rounded;
-#[path = "../support/rungs.rs"]
-mod rungs;
 mod second;
 mod small;
 mod varied;
 
+use crate::support::hand_over;
 use std::fmt::Write;
 
 use decks::battery::{self, Case};

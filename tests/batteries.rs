@@ -1,0 +1,15 @@
+//! Random problems by the hundred, lies about their answers, and large models: what takes longer than a claim. docs/tests.md.
+
+mod battery;
+mod coulomb;
+mod friction;
+mod liars;
+mod scales;
+mod soft;
+
+mod support {
+    pub mod face;
+    pub mod hand_over;
+    pub mod rungs;
+    pub mod warnings;
+}

@@ -1,0 +1,4 @@
+//! Sources and licences, read as text: nothing is solved. docs/tests.md.
+
+mod layering;
+mod licences;
