@@ -1,4 +1,5 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
+# make quick     after every change: unit tests of the library and the claims of tests/claims.rs
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
 # make metis     tests with the feature metis
 # make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls file" picks some
@@ -33,7 +34,7 @@ RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO
 STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery rungs bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
-.PHONY: man deb
+.PHONY: quick man deb
 .PHONY: abi licences packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -98,7 +99,7 @@ deb:
 
 # The table of docs/licences.md and LICENSE-THIRD-PARTY, from Cargo.lock and the sources of the crates.
 licences:
-	LICENCES=write $(CARGO) test --release --locked --test licences
+	LICENCES=write $(CARGO) test --release --locked --test documents -- licences::
 
 # The library as a host finds it: installed below build/stage.
 stage:
@@ -134,26 +135,28 @@ demo: setup
 	@tools/demo.sh build/demo build/data build/pictures
 
 # ---- tests
+quick:
+	$(CARGO) test --profile quick --locked -p feti-contact --lib --test claims
+
 N ?= 20000
 battery:
-	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- \
+	BATTERY=$(N) $(CARGO) test --release --locked --test batteries -- \
 	    every_random_problem no_marginal every_varied_problem small_problems_of_the_battery every_hard_problem \
-	    an_answer_does_not_depend
-	BATTERY=$(N) $(CARGO) test --release --locked --test coulomb -- problems_with_friction
+	    an_answer_does_not_depend problems_with_friction
 
 # What each second try saves: problems that are not solved, or solved wrongly, without it.
 rungs:
-	for mixture in 1 2; do for test in battery coulomb; do \
-	    BATTERY=$(N) BATTERY_MIXTURE=$$mixture $(CARGO) test --release --locked --test $$test -- \
+	for mixture in 1 2; do \
+	    BATTERY=$(N) BATTERY_MIXTURE=$$mixture $(CARGO) test --release --locked --test batteries -- \
 	        what_each_second_try --ignored --nocapture --test-threads=1 || exit 1; \
-	done; done
+	done
 
 # The bits of many answers, a line for 100: `make bits > before`, then again after a change that is to keep them.
 bits:
-	@BATTERY=$(or $(BITS),1000) $(CARGO) test --release --locked --quiet --test battery -- \
+	@BATTERY=$(or $(BITS),1000) $(CARGO) test --release --locked --quiet --test batteries -- \
 	    the_bits_of_many --ignored --nocapture | grep ': [0-9a-f]\{16\}$$'
 
-test: lib
+test:
 	@tools/setup.sh flang-19
 	$(CARGO) test --release --workspace --locked
 	@$(MAKE) --no-print-directory stage data
@@ -165,7 +168,7 @@ test: lib
 metis:
 	@tools/setup.sh libmetis-dev
 	$(CARGO) test --release --locked --features metis --lib linalg
-	$(CARGO) test --release --locked --features metis --test reference --test invariance
+	$(CARGO) test --release --locked --features metis --test claims -- reference:: invariance::
 
 # ---- hardening: longer or slower than a test should be
 SECONDS ?= 600

@@ -34,12 +34,6 @@ mod state;
 mod validation;
 
 #[cfg(test)]
-mod error_tests;
-#[cfg(test)]
-mod friction_tests;
-#[cfg(test)]
-mod panic_tests;
-#[cfg(test)]
 mod tests;
 
 pub use bodies::*;

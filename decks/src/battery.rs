@@ -391,3 +391,6 @@ fn sparse(values: &[f64]) -> Vec<(usize, f64)> {
     let entries = values.iter().copied().enumerate();
     entries.filter(|entry| entry.1 != 0.0).collect()
 }
+
+#[cfg(test)]
+mod tests;

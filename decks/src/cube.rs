@@ -291,3 +291,6 @@ fn mean_minus_value(q: usize) -> Vec<(usize, f64)> {
     row.push((q, -(q as f64) / length));
     row
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,14 +21,10 @@
 //! [`yardstick`] says when an answer is wrong, [`second`] solves small problems in double-double arithmetic ([`dd`]).
 
 pub mod battery;
-#[cfg(test)]
-mod battery_tests;
 pub mod block;
 pub mod blocks;
 pub mod by_elements;
 pub mod cube;
-#[cfg(test)]
-mod cube_tests;
 pub mod dd;
 pub mod dense;
 pub mod elements;
@@ -46,8 +42,6 @@ pub mod stack;
 pub mod varied;
 mod vector;
 pub mod yardstick;
-#[cfg(test)]
-mod yardstick_tests;
 
 pub use block::Block;
 pub use blocks::Blocks;

@@ -362,3 +362,6 @@ fn clusters(deck: &Deck) -> Vec<Vec<usize>> {
     let groups = (0..label.len()).map(|l| (0..label.len()).filter(|&p| label[p] == l).collect::<Vec<_>>());
     groups.filter(|group| !group.is_empty()).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -275,7 +275,7 @@ fn hard_problems_that_once_stalled_end_as_they_may() {
     }
 }
 
-/// BATTERY_KIND=Ties takes the problems of one kind alone. One problem with all its figures: `HARD=17 cargo test --release --test battery one_hard -- --ignored --nocapture`.
+/// BATTERY_KIND=Ties takes the problems of one kind alone. One problem with all its figures: `HARD=17 cargo test --release --test batteries one_hard -- --ignored --nocapture`.
 #[test]
 #[ignore]
 fn one_hard_problem_in_full() {

@@ -21,15 +21,18 @@ const WORK: &str = env!("CARGO_TARGET_TMPDIR");
 /// What Rust's standard library needs from the system when the archive is linked.
 const SYSTEM: [&str; 7] = ["-lcholmod", "-lgcc_s", "-lutil", "-lrt", "-lpthread", "-lm", "-ldl"];
 
-/// The archive that `make lib` has built: no test of cargo builds it, because none can link it as a crate.
-fn library() -> PathBuf {
-    let here = std::env::current_exe().expect("path of the test");
-    let deps = here.parent().expect("folder of the test");
-    let found = [deps.join("libfeti_contact.a"), deps.with_file_name("libfeti_contact.a")];
-    found
-        .into_iter()
-        .find(|path| path.exists())
-        .unwrap_or_else(|| panic!("no libfeti_contact.a beside {}: `make lib` builds it", deps.display()))
+/// The archive of the library. Cargo builds it for no test, because none can link it as a crate: the first that asks builds it, in
+/// the target folder of this program.
+fn library() -> &'static Path {
+    static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
+    LIBRARY.get_or_init(|| {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["build", "--release", "--locked", "-p", "feti-contact-c", "--message-format=json"]);
+        cargo.arg("--target-dir").arg(Path::new(WORK).with_file_name("")).current_dir(ROOT);
+        let told = run(&mut cargo);
+        let mut files = told.split('"').filter(|text| text.ends_with("libfeti_contact.a"));
+        files.next().expect("cargo names the archive").into()
+    })
 }
 
 /// The reference cases as plain text, unpacked once.

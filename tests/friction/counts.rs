@@ -56,7 +56,7 @@ fn friction_costs_little_more_than_the_linear_problem_of_its_states() {
     assert!(ratios[ratios.len() - 1] <= 2.0, "worst {}", ratios[ratios.len() - 1]);
 }
 
-/// All 36; minutes without optimisation: `cargo test --release --test friction -- --ignored --nocapture`.
+/// All 36; minutes without optimisation: `cargo test --release --test batteries friction:: -- --ignored --nocapture`.
 #[test]
 #[ignore]
 fn counts_of_the_36_decks() {

@@ -1,5 +1,5 @@
 //! The figures of docs/certificate.md: what the certificate says of right answers and of lies, printed, nothing judged.
-//! `LIARS=10000 cargo test --release --test liars -- --ignored --nocapture`
+//! `LIARS=10000 cargo test --release --test batteries liars -- --ignored --nocapture`
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -65,7 +65,7 @@ fn counts_decks_in_one_matrix_have_the_bits_and_products_of_separate_bodies() {
     assert_same("cube with friction", &rubbing::cube(&Cube::default(), 0.5, 0.3));
 }
 
-/// `cargo test --release --test parts -- --ignored --nocapture`
+/// `cargo test --release --test claims parts:: -- --ignored --nocapture`
 #[test]
 #[ignore = "prints times"]
 fn times_of_one_matrix_against_those_of_separate_bodies() {

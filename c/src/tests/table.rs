@@ -2,7 +2,7 @@
 
 use std::ptr::{null, null_mut};
 
-use super::super::*;
+use crate::*;
 
 pub const SOURCES: [&str; 22] = [
     include_str!("../bodies/body.rs"),

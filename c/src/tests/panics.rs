@@ -3,9 +3,9 @@
 
 use std::ptr::{null, null_mut};
 
-use super::tests::{assert_all, last_detail, last_error, string, Owned};
-use super::*;
+use super::{assert_all, last_detail, last_error, string, Owned};
 use crate::boundary::{call, enter, enter_with_status, without_problem};
+use crate::*;
 use feti_contact::error::Result;
 use feti_contact::platform::threads::{run as run_on_pool, run_heard, Tasks};
 use feti_contact::solver::{Listener, Reply};

@@ -5,8 +5,8 @@
 
 use std::ptr::{null, null_mut};
 
-use super::tests::{last_detail, last_error, Owned};
-use super::*;
+use super::{last_detail, last_error, Owned};
+use crate::*;
 
 /// Rows u_1 <= 0 and u_0 <= infinity, which never closes; an equality row without entries.
 fn block() -> Owned {

@@ -5,9 +5,12 @@ use std::ffi::{c_char, CStr};
 use std::ptr::null_mut;
 use std::sync::mpsc;
 
-use super::*;
 use crate::boundary::{call, enter, handle};
+use crate::*;
 
+mod errors;
+mod friction;
+mod panics;
 mod table;
 use table::{statuses, SOURCES};
 

@@ -2,8 +2,8 @@
 
 use std::ptr::null_mut;
 
-use super::tests::{last_detail, last_error, string, Owned};
-use super::*;
+use super::{last_detail, last_error, string, Owned};
+use crate::*;
 
 #[test]
 fn info_is_written_whatever_happens_and_no_more_than_the_caller_has_room_for() {
