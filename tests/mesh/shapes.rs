@@ -41,7 +41,7 @@ fn on_bottom(at: [f64; 3]) -> bool {
 }
 
 #[test]
-fn tetrahedra_of_both_kinds() {
+fn cut_tetrahedra_of_both_kinds_give_the_answer_of_whole_bodies() {
     let tet4 = Model::stacked(cube(4, 0.0).tetrahedra(), cube(4, 1.0).tetrahedra(), on_bottom);
     same("tet4", &tet4, 7, 4);
     let tet10 = |low| cube(2, low).tetrahedra().quadratic();
@@ -49,7 +49,7 @@ fn tetrahedra_of_both_kinds() {
 }
 
 #[test]
-fn distorted_hexahedra() {
+fn cut_distorted_hexahedra_give_the_answer_of_whole_bodies() {
     let bent = |low: f64| {
         Mesh::grid([4; 3], move |[x, y, z]| {
             let inside = x * (1.0 - x) * y * (1.0 - y) * z * (1.0 - z);
@@ -74,7 +74,7 @@ fn layered(n: usize, thick: usize, contrast: f64) -> Model {
 
 /// With layers 1:1e6 the dual alone does not reach the certificate of the whole: the data of the host complete the answer.
 #[test]
-fn layers_of_very_different_stiffness() {
+fn cut_layers_of_very_different_stiffness_give_the_answer_of_whole_bodies() {
     for contrast in [1e4, 1e6] {
         same("layers", &layered(4, 1, contrast), 8, 4);
     }
@@ -96,7 +96,7 @@ fn factors_in_single_precision_take_hardly_more_products_where_layers_are_of_ver
 
 /// The plate bends within each of its pieces, and takes 2.2 times the products of the cubes; twice is the goal.
 #[test]
-fn a_thin_plate_and_a_ring() {
+fn cut_plates_and_rings_give_the_answer_of_whole_bodies() {
     let plate = |low: f64| Mesh::grid([12, 12, 1], move |[x, y, z]| [x, y, 0.04 * z + low]);
     let plates = Model::stacked(plate(0.0), plate(0.04), |at| at[2] == 0.0);
     let (own, most) = products("plate", &plates, 9, 6);
@@ -112,7 +112,7 @@ fn a_thin_plate_and_a_ring() {
 }
 
 #[test]
-fn a_contact_across_the_cuts_of_a_body_that_slides() {
+fn contact_across_the_cuts_of_a_body_that_slides_gives_the_answer_of_whole_bodies() {
     // free to slide along x but for a spring
     let mut model = Model::stacked(cube(5, 0.0), cube(5, 1.0), on_bottom);
     let first = model.bodies[1].numbers().0[0].unwrap();
@@ -123,7 +123,7 @@ fn a_contact_across_the_cuts_of_a_body_that_slides() {
 
 /// Springs to the ground and between far unknowns as elements of their own, unknowns of no element, two parts in one body.
 #[test]
-fn elements_of_any_size_isolated_unknowns_and_two_parts_in_one_body() {
+fn elements_of_any_size_isolated_unknowns_and_two_parts_may_be_in_one_cut_body() {
     let mesh = cube(3, 0.0);
     let (number, cubes) = mesh.numbers();
     assert!(number.iter().all(Option::is_some));

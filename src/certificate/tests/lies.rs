@@ -13,7 +13,7 @@ fn held() -> DenseModel {
 }
 
 #[test]
-fn held_bodies() {
+fn wrong_forces_and_motions_of_held_bodies_are_refused() {
     held().refuses_wrong_forces("held");
     held().refuses_wrong_motions("held", 1.0);
 }
@@ -57,7 +57,7 @@ fn a_stiff_part_hides_no_error_of_a_soft_one() {
 
 /// A spring of 1e-8 holds the body, and an obstacle stops it.
 #[test]
-fn a_body_on_a_weak_spring() {
+fn wrong_forces_and_motions_of_a_body_on_a_weak_spring_are_refused() {
     let parts = vec![chain(&[2.0, 3.1, 1.7], &[(0, 1e-8)]).loaded(&[(0, 1.0)]), chain(&[1.9], &[(1, 3.7)])];
     let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.3, 0.0)];
     let model = DenseModel { parts, contact, active: vec![0], ..DenseModel::default() };
