@@ -1,24 +1,19 @@
 //! Bodies whose stiffness the host keeps: the same answers as with matrices, for every generalised inverse, thread and
 //! option; wrong functions are refused by name.
 
-#[path = "../reference/case.rs"]
-#[allow(dead_code)]
-mod case;
-#[path = "../support/hand_over.rs"]
-#[allow(dead_code)]
-mod hand_over;
-
 mod host;
 mod refused;
 
 use std::sync::atomic::Ordering;
 use std::thread;
 
-use case::{difference, Case};
 use decks::{Cube, Deck};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 use host::{Form, Host};
+
+use crate::reference::case::{self, difference, Case};
+use crate::support::hand_over;
 
 fn dense_case(k: &case::Sparse) -> Vec<f64> {
     let n = k.ptr.len() - 1;
