@@ -35,7 +35,7 @@ STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery rungs bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
 .PHONY: quick man deb
-.PHONY: abi licences packaging stage install uninstall lint fmt clean
+.PHONY: abi licences numbers packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -100,6 +100,10 @@ deb:
 # The table of docs/licences.md and LICENSE-THIRD-PARTY, from Cargo.lock and the sources of the crates.
 licences:
 	LICENCES=write $(CARGO) test --release --locked --test documents -- licences::
+
+# The page of thresholds, from src/numbers.
+numbers:
+	NUMBERS=write $(CARGO) test --release --locked --test documents -- numbers::
 
 # The library as a host finds it: installed below build/stage.
 stage:

@@ -76,6 +76,7 @@ pub mod error;
 pub mod linalg;
 mod mesh;
 mod model;
+mod numbers;
 pub mod platform;
 mod progress;
 pub mod qp;

@@ -2,30 +2,28 @@
 
 use crate::body::misfit::Misfit;
 use crate::body::null_space::{
-    exact, orthonormal, refuse_overflow, Modes, NullSpaceInput, Products, Verified, DEPENDENT, ROUNDING,
+    exact, orthonormal, refuse_overflow, Modes, NullSpaceInput, Products, Verified,
 };
 use crate::error::Result;
 use crate::linalg::dense::spectrum::right_singular;
-use crate::linalg::vector::{axpy, dot, norm, norm_max};
+use crate::linalg::vector::{axpy, dot, norm, norm_max, NOISE};
 use crate::linalg::Matrix;
+use crate::numbers::body::MAY_BE_FREE;
+use crate::numbers::linalg::DEPENDENT;
+use crate::numbers::rounding;
 use crate::platform::memory::zeros;
-
-/// A candidate motion belongs to the null space if `|D^-1 K v|` does not exceed this part of `|v|`.
-pub(super) const CANDIDATE: f64 = 1e-11;
-/// Entries that cancelled to this part of their terms are zero (supports of 1e30 would multiply them).
-const CANCELLED: f64 = 1e-12;
 
 /// Basis of the null space with `R'DR = I`.
 pub fn verified<K: Products>(k: &K, input: &NullSpaceInput, tolerance: f64) -> Result<Verified> {
     match input.modes {
         Modes::Exact => exact(k, &input.vectors, tolerance),
         Modes::Candidates => {
-            let found = Kernel::of(k, &input.vectors, CANDIDATE)?;
+            let found = Kernel::of(k, &input.vectors, MAY_BE_FREE)?;
             Ok(Verified { misfit: found.misfit(), ..exact(k, &found.motions, tolerance)? })
         }
         Modes::Soft => {
             let basis = orthonormal(|i| k.metric(i, 1.0), &input.vectors)?;
-            Ok(Verified { basis, error: ROUNDING, misfit: None })
+            Ok(Verified { basis, error: NOISE, misfit: None })
         }
     }
 }
@@ -57,7 +55,7 @@ impl Kernel {
             return Ok(found);
         }
         let sizes = terms_of(candidates, &span, &order)?;
-        let coarse = (0..sizes.cols).any(|q| ROUNDING * norm(sizes.col(q)) > limit);
+        let coarse = (0..sizes.cols).any(|q| NOISE * norm(sizes.col(q)) > limit);
         let (image, _) = k.mul_columns(&span)?;
         let rounding = if coarse { k.mul_columns(&sizes)?.1 } else { Matrix::default() };
         let resisted = Matrix::from_fn(span.rows, span.cols, |i, j| image.get(i, j) / k.metric(i, 1.0))?;
@@ -68,7 +66,7 @@ impl Kernel {
             let explained = |i: usize| {
                 let sum = |of: &dyn Fn(usize) -> f64| (0..span.cols).map(of).sum::<f64>();
                 let force = sum(&|q| x[q] * image.get(i, q));
-                force.abs() <= ROUNDING * sum(&|q| x[q].abs() * rounding.get(i, q))
+                force.abs() <= NOISE * sum(&|q| x[q].abs() * rounding.get(i, q))
             };
             if *value > limit && !(coarse && (0..span.rows).all(explained)) {
                 found.next = found.next.min(*value);
@@ -106,9 +104,9 @@ fn combined(span: &Matrix, x: &[f64]) -> Result<Vec<f64>> {
     for (q, share) in x.iter().enumerate() {
         terms.iter_mut().zip(span.col(q)).for_each(|(t, v)| *t += share.abs() * v.abs());
     }
-    let floor = CANCELLED * norm_max(&motion);
+    let floor = rounding::METHOD * norm_max(&motion);
     for (v, t) in motion.iter_mut().zip(&terms) {
-        if v.abs() <= CANCELLED * t || v.abs() <= floor {
+        if v.abs() <= rounding::METHOD * t || v.abs() <= floor {
             *v = 0.0;
         }
     }

@@ -15,15 +15,9 @@ use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::vector::{axpy, dot, norm};
 use crate::linalg::{Csr, Matrix, Multiple, Packed};
+use crate::numbers::body::{BESIDE_NULL, CARRIED};
+use crate::numbers::linalg::ROOT;
 use crate::platform::memory::zeros;
-
-/// A motion is a null vector if less than this part of its length is left beside the null vectors.
-const DEPENDENT: f64 = 1e-6;
-/// Motions with a compliance L'T below this, relative to 1 / K_ii, stay in K+: all motions of a cube of 4^3 elements have
-/// more than 8, no motion of a thin layer held on a whole face has more than 2.
-const SOFT: f64 = 4.0;
-/// Compliances L'T with a ratio below this are not distinguished from rounding: for example supports of 1e12 K_ii.
-const APART: f64 = 1e-8;
 
 /// C with `C C' = T S T'`, n x q.
 #[derive(Clone)]
@@ -48,11 +42,11 @@ pub(super) fn motions(
 ) -> Result<Option<Motions>> {
     let root = k.roots()?;
     let null = scaled(null_space, |i| root[i])?;
-    let mut z = without(scaled(rigid, |i| root[i])?.orthonormalised(DEPENDENT), &null)?;
-    for j in (0..z.cols).filter(|&j| norm(z.col(j)) <= DEPENDENT).collect::<Vec<_>>() {
+    let mut z = without(scaled(rigid, |i| root[i])?.orthonormalised(BESIDE_NULL), &null)?;
+    for j in (0..z.cols).filter(|&j| norm(z.col(j)) <= BESIDE_NULL).collect::<Vec<_>>() {
         z.col_mut(j).fill(0.0);
     }
-    let l = scaled(&z.orthonormalised(DEPENDENT), |i| root[i])?;
+    let l = scaled(&z.orthonormalised(BESIDE_NULL), |i| root[i])?;
     let mut c = l.clone();
     for j in 0..c.cols {
         factor.solve(c.col_mut(j))?;
@@ -60,8 +54,8 @@ pub(super) fn motions(
     let (compliance, v) = symmetric_eigen(&symmetric(c.cols, |a, b| dot(l.col(a), c.col(b)))?)?;
     let most = compliance.iter().fold(0.0, |most: f64, value| most.max(*value));
     // ascending
-    let first = compliance.iter().position(|value| *value >= SOFT).unwrap_or(compliance.len());
-    if compliance.iter().any(|value| value.is_nan() || *value <= APART * most) || first == c.cols {
+    let first = compliance.iter().position(|value| *value >= CARRIED).unwrap_or(compliance.len());
+    if compliance.iter().any(|value| value.is_nan() || *value <= ROOT * most) || first == c.cols {
         return Ok(None);
     }
     c.turn_rows(&v);

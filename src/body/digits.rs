@@ -6,6 +6,7 @@ use std::fmt;
 
 use crate::error::Result;
 use crate::linalg::{Matrix, Symmetric};
+use crate::numbers::body::{LAST_DIGITS_USED, PIVOT_ROUNDING, ROWS_SUM_TO_0};
 use crate::platform::memory::{reserved, zeros};
 
 /// Number of rows in the sample, and of entries per row.
@@ -15,20 +16,13 @@ const ENTRIES: usize = 16;
 pub(super) const FEWEST: usize = 7;
 /// ... and about one in a hundred double precision numbers needs no more than `MOST` digits.
 const MOST: usize = 15;
-/// Required part of the off-diagonal entries that need the last digit or the last but one: 99 of 100 rounded numbers do,
-/// but entries of regular meshes and frames may be round numbers. Springs to the ground affect the diagonal only.
-const USED: f64 = 0.4;
 /// The last of the 24 bits of a number in single precision may be 0: all but 1 of 32 numbers need at least this many
 /// bits.
 const BITS: u32 = 20;
-/// The entries of a body are exact if at least this part of its rows sums to 0.
-const EXACT: f64 = 0.9;
 /// Entries are compared with the first `MODULI` values that are not in simple ratios; a ratio p / q is simple if p and q
 /// do not exceed these.
 const MODULI: usize = 8;
 const SIMPLE: [f64; 2] = [4096.0, 64.0];
-/// Rounding of a pivot that cancels, relative to rounding of a single entry.
-const PIVOT: f64 = 10.0;
 /// Bound of a row sum that is 0 up to rounding of its terms.
 const SUM: f64 = 2.0 * f64::EPSILON;
 
@@ -66,7 +60,7 @@ impl Digits {
         let used = |uses: &dyn Fn(f64) -> bool| {
             let beside = || sampled.iter().filter(|entry| entry.1);
             let count = beside().filter(|entry| uses(entry.0)).count();
-            count > 0 && count as f64 >= USED * beside().count() as f64
+            count > 0 && count as f64 >= LAST_DIGITS_USED * beside().count() as f64
         };
         let found = Self::among(&sampled, fewest, used);
         Ok(if found.is_some() && sums_are_exact(k)? { None } else { found })
@@ -115,7 +109,7 @@ impl Digits {
 
     /// The relative pivot that rounding of the entries may leave in place of 0: then the dof must be in t.
     pub fn pivot(self) -> f64 {
-        PIVOT * self.relative()
+        PIVOT_ROUNDING * self.relative()
     }
 
     /// Standard deviation of `v'E v` for each motion v, one per column of x, E the rounding of the entries: the errors of entries in a simple ratio have this ratio, those of other entries are independent. A matrix of
@@ -220,7 +214,7 @@ fn sums_are_exact(k: &Symmetric) -> Result<bool> {
     k.mul_with_terms(&ones, &mut sums, &mut terms);
     let left = |(sum, terms): &(&f64, &f64)| sum.abs() > SUM * **terms;
     let others = || sums.iter().zip(&terms).filter(left);
-    let few = (others().count() as f64) < (1.0 - EXACT) * k.order() as f64;
+    let few = (others().count() as f64) < (1.0 - ROWS_SUM_TO_0) * k.order() as f64;
     Ok(few && others().all(|(sum, _)| *sum > 0.0))
 }
 

@@ -3,11 +3,9 @@
 use crate::error::{Error, Kind, Result};
 use crate::linalg::dense::spectrum::right_singular;
 use crate::linalg::Matrix;
+use crate::numbers::body::AS_WELL;
+use crate::numbers::linalg::DEPENDENT;
 use crate::platform::memory::zeros;
-
-/// Limit of the ratio of the smallest to the largest singular value of the rows of `D^1/2 R` at the dofs held: below it
-/// these dofs do not hold the body.
-const REGULAR: f64 = 1e-10;
 
 /// Dofs given by the host, which must hold every motion of the null space.
 pub fn given_dofs(null_space: &Matrix, root: &[f64], given: &[usize]) -> Result<Vec<usize>> {
@@ -20,16 +18,12 @@ pub fn given_dofs(null_space: &Matrix, root: &[f64], given: &[usize]) -> Result<
         return Ok(Vec::new());
     }
     let values = singular_values(null_space, root, given)?;
-    if values[r - 1].is_nan() || values[r - 1] <= REGULAR * values[0] {
+    if values[r - 1].is_nan() || values[r - 1] <= DEPENDENT * values[0] {
         let what = "the fixing dofs do not hold every motion of the null space".to_string();
-        return Err(refused(what).dof(given[0]).value(values[r - 1]).limit(REGULAR * values[0]));
+        return Err(refused(what).dof(given[0]).value(values[r - 1]).limit(DEPENDENT * values[0]));
     }
     Ok(given.to_vec())
 }
-
-/// Other dofs are accepted if their smallest singular value is at least this part of that of the dofs chosen: the largest
-/// entry of K+ grows with its inverse square, so that rounding costs at most one digit.
-const AS_WELL: f64 = 0.3;
 
 /// Whether `dofs`, found for other values of K, hold the null space nearly as well as `chosen`, found for these values.
 pub fn hold_as_well(null_space: &Matrix, root: &[f64], dofs: &[usize], chosen: &[usize]) -> Result<bool> {

@@ -7,9 +7,11 @@ use std::sync::Arc;
 use crate::body::carried::{self, Carried, Motions};
 use crate::body::host::HostMultiple;
 use crate::body::misfit::Misfit;
-use crate::body::null_space::ROUNDING as KNOWN;
+use crate::linalg::vector::NOISE;
+use crate::numbers::body::MOST_ROUNDING;
+
 use crate::body::pilots::Pilots;
-use crate::body::probe::{known_to, sharpened, Factor, MOST_ROUNDING};
+use crate::body::probe::{known_to, sharpened, Factor};
 use crate::body::rounded::Rounded;
 use crate::body::soft::{known_to_entries, soft_motions};
 use crate::body::spectrum::Doubt;
@@ -273,7 +275,7 @@ impl GeneralizedInverse {
 
     /// Measures the error of a null space that K maps to more than rounding, as amplified by the factor.
     fn measured(mut self, k: &Multiple) -> Result<Self> {
-        if self.error > KNOWN {
+        if self.error > NOISE {
             if let Some(sharp) = sharpened(k, &self.null_space)? {
                 self.null_space = sharp;
             }

@@ -11,13 +11,11 @@ use crate::body::known::Known;
 use crate::body::probe::missing_mode;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Cholesky, Matrix};
+use crate::numbers::body::LOOSE;
 use crate::platform::memory::zeros;
 
 /// Limit of dofs held in addition to one per given motion: the number of rigid motions of a body.
 const FURTHER: usize = 6;
-/// Other dofs are chosen if the present ones hold their motions by less than this part of what the best dofs would: K+
-/// grows with the inverse square.
-const LOOSE: f64 = 0.03;
 
 impl Known {
     /// The factor of F, its analysis, and how many times further dofs had to be held.

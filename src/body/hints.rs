@@ -4,22 +4,21 @@
 //! resists some of them and is nevertheless singular (coordinates of another state, a body of revolution), or if it has further
 //! null vectors (a hinge), the null space is searched in K.
 
-use crate::body::candidates::{Kernel, CANDIDATE};
+use crate::body::candidates::Kernel;
 use crate::body::digits::Digits;
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::known::{Known, Retry};
-use crate::body::misfit::{Misfit, RESISTED};
-use crate::body::null_space::{exact, Modes, NullSpaceInput, Verified, ROUNDING};
+use crate::body::misfit::Misfit;
+use crate::body::null_space::{exact, Modes, NullSpaceInput, Verified};
 use crate::body::plan::Plan;
 use crate::body::search::Search;
 use crate::body::spectrum::Doubt;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::NOISE;
 use crate::linalg::{Matrix, Multiple};
+use crate::numbers::body::{MAY_BE_FREE, MIXED, RESISTED};
 use crate::platform::memory::{headroom, PRODUCTS};
-
-/// Factor on the tolerance of rigid motions: the terms of their combinations may cancel.
-const MIXED: f64 = 16.0;
 
 impl GeneralizedInverse {
     /// Null space and fixing dofs of `k` from the rigid motions of coordinates, as far as these fit K. If the motions are
@@ -33,12 +32,12 @@ impl GeneralizedInverse {
     ) -> Result<Plan> {
         let n = k.order();
         let _room = headroom(64 * n * size_of::<f64>() + PRODUCTS, "the null space of a body")?;
-        let Kernel { motions, candidates, next } = Kernel::of(&k, rigid, CANDIDATE)?;
+        let Kernel { motions, candidates, next } = Kernel::of(&k, rigid, MAY_BE_FREE)?;
         let misfit = Misfit { fit: motions.cols, of: candidates, next };
         let digits = if misfit.fit < misfit.of { Digits::of_least(&k.matrix, Digits::TOLD)? } else { None };
         if let Some(digits) = digits {
             if let Some(doubt) = explained(&k, digits, rigid)? {
-                let told = Some(doubt).filter(|doubt| doubt.resisted > CANDIDATE);
+                let told = Some(doubt).filter(|doubt| doubt.resisted > MAY_BE_FREE);
                 let tolerance = tolerance.max(MIXED * doubt.resisted);
                 return Self::known(k, rigid, (tolerance, told), fixing);
             }
@@ -105,7 +104,7 @@ fn explained(k: &Multiple, digits: Digits, rigid: &Matrix) -> Result<Option<Doub
     for j in 0..rigid.cols {
         let most = digits.most(&k.matrix, rigid.col(j))?;
         let (image, terms) = (image.col(j), terms.col(j));
-        let left = |i: usize| image[i].abs() - ROUNDING * terms[i];
+        let left = |i: usize| image[i].abs() - NOISE * terms[i];
         if (0..k.order()).any(|i| left(i) > k.by * most[i]) {
             return Ok(None);
         }

@@ -5,20 +5,18 @@
 use crate::body::candidates::verified;
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::host::HostMultiple;
-use crate::body::null_space::{largest, NullSpaceInput, Products, Verified, ROUNDING as KNOWN};
-use crate::body::probe::{Factor, PROBE, UNLIKELY};
+use crate::body::null_space::{largest, NullSpaceInput, Products, Verified};
+use crate::body::probe::Factor;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::random::Random;
+use crate::linalg::vector::NOISE;
 use crate::linalg::vector::{axpy, dot, ratio, weighted_norm};
 use crate::linalg::Matrix;
+use crate::numbers::body::{NEGATIVE, PROBE, UNLIKELY};
 
 /// Number of test displacements x and of test forces b.
 const DISPLACEMENTS: usize = 3;
 const FORCES: usize = 2;
-/// Limit of the skew or negative part of K and K+.
-const SKEW: f64 = 1e-10;
-/// Rounding errors of a product, relative to D-norms.
-const NOISE: f64 = 64.0 * f64::EPSILON;
 /// A motion v outside R belongs to the null space if `|K v| < MISSING |v|`. K+ reproduces K x no better than this, so an
 /// error of K+ along a softer motion could not be detected.
 const MISSING: f64 = 10.0 * PROBE;
@@ -31,7 +29,7 @@ impl GeneralizedInverse {
         Ok(Self {
             null_space,
             stiffness: Vec::new(),
-            rounding: KNOWN,
+            rounding: NOISE,
             error,
             fixing: Vec::new(),
             gap: None,
@@ -105,8 +103,8 @@ impl<'a> Probe<'a> {
         let (x, kx) =
             ([0, 1].map(|j| self.length(self.x.col(j))), [0, 1].map(|j| self.force(self.kx.col(j))));
         let found = ratio(skew(&self.x, &self.kx), x[0] * kx[1] + x[1] * kx[0]);
-        if found > SKEW {
-            return refused("K", found, SKEW);
+        if found > NEGATIVE {
+            return refused("K", found, NEGATIVE);
         }
         let (b, moved) =
             ([0, 1].map(|j| self.force(self.b.col(j))), [0, 1].map(|j| self.length(self.kplus_b.col(j))));
@@ -130,8 +128,8 @@ impl<'a> Probe<'a> {
         for j in 0..DISPLACEMENTS {
             let (x, kx) = (self.x.col(j), self.kx.col(j));
             let found = ratio(dot(x, kx), self.length(x) * self.force(kx));
-            if found < -SKEW {
-                return refused("K", found, SKEW);
+            if found < -NEGATIVE {
+                return refused("K", found, NEGATIVE);
             }
         }
         for j in 0..FORCES {

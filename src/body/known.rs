@@ -5,12 +5,14 @@ use std::sync::Arc;
 use crate::body::fixing::{fixing_dofs, hold_as_well};
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Symbolic};
 use crate::body::misfit::Misfit;
-use crate::body::null_space::{NullSpaceInput, DEPENDENT, ROUNDING as KNOWN};
+use crate::body::null_space::NullSpaceInput;
 use crate::body::pilots::Pilots;
 use crate::body::probe::{probe, Factor};
 use crate::body::spectrum::Doubt;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::NOISE;
 use crate::linalg::{Analysis, Cholesky, Matrix, Multiple};
+use crate::numbers::linalg::DEPENDENT;
 
 /// The plan if the null space is known before the factorisation.
 pub struct Known {
@@ -135,7 +137,7 @@ impl Known {
         let inverse = GeneralizedInverse {
             null_space: self.null_space.clone(),
             stiffness: Vec::new(),
-            rounding: KNOWN,
+            rounding: NOISE,
             error: self.error,
             fixing: self.fixing.clone(),
             gap: None,
@@ -165,7 +167,7 @@ mod tests {
         ] {
             let vectors = Matrix { rows: 3, cols: 1, data: vector.to_vec() };
             let pilots = Pilots { metric: vec![1e6; 3].into(), carried: vec![1, 2].into() };
-            let known = Known::of(free.clone().into(), vectors, KNOWN, vec![1], false);
+            let known = Known::of(free.clone().into(), vectors, NOISE, vec![1], false);
             let known = known.with_pilots(pilots).unwrap();
             assert_eq!((known.null_space.cols, known.fixing), (held, fixing), "{vector:?}");
         }

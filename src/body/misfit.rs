@@ -2,8 +2,7 @@
 
 use std::fmt;
 
-/// A motion with a larger `|D^-1 K v|` than this part of `|v|` is resisted like any other.
-pub(super) const RESISTED: f64 = 0.1;
+use crate::numbers::body::RESISTED;
 
 /// Rigid motions of coordinates, or candidates, of which not all fit K, or which are not all motions of K.
 #[derive(Debug, Clone, Copy, PartialEq)]

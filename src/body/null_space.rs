@@ -5,8 +5,11 @@
 
 use crate::body::misfit::Misfit;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::NOISE;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
 use crate::linalg::{Matrix, Multiple, Symmetric};
+use crate::numbers::body::{LARGEST, PEAK};
+use crate::numbers::linalg::DEPENDENT;
 use crate::platform::memory::zeros;
 
 /// The meaning of the vectors given by the host, or of the rigid motions of its coordinates.
@@ -51,17 +54,6 @@ impl NullSpaceInput {
     }
 }
 
-/// Columns are dependent if less than this part of their length is left after orthogonalisation.
-pub(super) const DEPENDENT: f64 = 1e-10;
-/// Bound of `|A z|` of a unit vector z that is 0 up to rounding, even if its terms are not larger: z of dofs without
-/// stiffness.
-pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// Ratio of the largest to the mean error of a null vector.
-const PEAK: f64 = 8.0;
-
-/// Squares of larger numbers overflow. In the metric of its diagonal no entry of a semidefinite matrix exceeds 1.
-const LARGEST: f64 = 1e150;
-
 /// What the tests of a null space need of K.
 pub trait Products {
     /// The terms to which products with R are relative, in words.
@@ -97,12 +89,12 @@ pub struct Verified {
 pub fn exact<K: Products>(k: &K, vectors: &Matrix, tolerance: f64) -> Result<Verified> {
     let basis = orthonormal(|i| k.metric(i, 1.0), vectors)?;
     let (image, terms) = k.mul_columns(&basis)?;
-    let mut error = ROUNDING;
+    let mut error = NOISE;
     let weight = |i: usize| 1.0 / k.metric(i, 1.0);
     for j in 0..basis.cols {
         let left = weighted_norm(image.col(j), weight);
         let found = ratio(left, weighted_norm(terms.col(j), weight));
-        if found.is_nan() || found > tolerance && left > ROUNDING {
+        if found.is_nan() || found > tolerance && left > NOISE {
             let what = format!("not a null space: |K R| = {found:.1e} {} exceeds {tolerance:.1e}", K::TERMS);
             let dof = largest(image.col(j), weight);
             return Err(Error::new(Kind::NullSpace, what).dof(dof).value(found).limit(tolerance));

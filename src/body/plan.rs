@@ -6,10 +6,12 @@ use crate::body::candidates::{verified, Kernel};
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
 use crate::body::known::{Known, Retry};
-use crate::body::misfit::{Misfit, RESISTED};
-use crate::body::null_space::{Modes, NullSpaceInput, Verified, ROUNDING as KNOWN};
+use crate::body::misfit::Misfit;
+use crate::body::null_space::{Modes, NullSpaceInput, Verified};
 use crate::body::pilots::Pilots;
-use crate::body::probe::PROBE;
+use crate::linalg::vector::NOISE;
+use crate::numbers::body::{PROBE, RESISTED};
+
 use crate::body::search::Search;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Multiple};
@@ -74,7 +76,7 @@ impl Plan {
     /// The plan if rows carry all unknowns: the null space of K need not be known.
     pub fn of_pilots(k: Multiple, pilots: Pilots) -> Result<Self> {
         let none = Matrix::zeros(k.order(), 0)?;
-        Self::Known(Known::of(k, none, KNOWN, Vec::new(), false)).with_pilots(Some(pilots))
+        Self::Known(Known::of(k, none, NOISE, Vec::new(), false)).with_pilots(Some(pilots))
     }
 
     /// Holds these unknowns as well.
@@ -172,7 +174,7 @@ impl Plan {
             Self::Known(known) if other.gap.is_none() && other.own_motions() == known.fixing.len() => {
                 let misfit = known.held();
                 let Known { k, null_space, error, doubt, soft, pilots, rigid, .. } = known;
-                let (rounding, stiffness) = (KNOWN, Vec::new());
+                let (rounding, stiffness) = (NOISE, Vec::new());
                 let (carried, other) = (None, other.clone());
                 let own = GeneralizedInverse {
                     null_space,

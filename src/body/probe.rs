@@ -4,36 +4,17 @@
 use std::sync::Arc;
 
 use crate::body::host::HostMultiple;
-use crate::body::null_space::{largest, orthonormal, overflow, ROUNDING as KNOWN};
+use crate::body::null_space::{largest, orthonormal, overflow};
 use crate::body::rounded::Rounded;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::random::Random;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{axpy, dot, norm_max, ratio, weighted_norm};
+use crate::linalg::vector::{axpy, dot, norm_max, ratio, weighted_norm, NOISE};
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
+use crate::numbers::body::{MOST_ERROR, NEGATIVE, PROBE, SAMPLE, SHARPENING, UNLIKELY};
+use crate::numbers::rounding;
 use crate::platform::memory::zeros;
 use crate::platform::{interrupt, tally};
-
-/// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
-const NEGATIVE_PIVOT: f64 = 1e-10;
-/// K with the dofs held is singular if some v has `|A v|` below this, relative to `| |A| |v| |`.
-pub(super) const SINGULAR: f64 = 1e-13;
-/// The part of a random vector along a given direction is `n^-1/2` of its length, and not smaller by this factor.
-/// (Rounding leaves 1e-16 of a missing mode, far below `SINGULAR`: to miss it, its part would have to be 1e3 times
-/// smaller still.)
-pub(super) const UNLIKELY: f64 = 1e3;
-/// Largest residual of a solve with the factor, relative to its terms.
-pub(super) const PROBE: f64 = 1e-8;
-/// Rounding errors of R may exceed those of the sample by this factor, ...
-pub(super) const SAMPLE: f64 = 16.0;
-/// ... but not this value, relative to the fastest dof.
-pub(super) const MOST_ERROR: f64 = 1e-7;
-/// A larger part of a row or a load is never rounding, however inaccurate R is: the answer is marginal.
-pub(super) const MOST_ROUNDING: f64 = 1e-9;
-
-/// Rounding of K, in eps, that a null vector is not to follow: 1 and 64 leave twice as many wrong answers of bodies with parts of
-/// different stiffness.
-const SHIFT: f64 = 8.0;
 
 #[derive(Clone)]
 pub(super) enum Factor {
@@ -66,7 +47,7 @@ impl Factor {
 impl Breakdown {
     /// The error if the pivot is so negative that K is indefinite.
     pub(super) fn refused(&self) -> Option<Error> {
-        (self.relative_pivot < -NEGATIVE_PIVOT).then(|| self.indefinite())
+        (self.relative_pivot < -NEGATIVE).then(|| self.indefinite())
     }
 
     pub(super) fn indefinite(&self) -> Error {
@@ -108,14 +89,14 @@ pub(super) fn probe(factor: &Factor, k: &Multiple, fixing: &[usize], modes: usiz
     }
     let mut softest = size(&b) / size(&terms);
     let found = softest;
-    if softest.is_nan() || softest < UNLIKELY * (n as f64).sqrt() * SINGULAR {
+    if softest.is_nan() || softest < UNLIKELY * (n as f64).sqrt() * rounding::SOLVE {
         (0..n).for_each(|i| b[i] = k.metric(i, 1.0) * x[i]);
         x.copy_from_slice(&b);
         factor.solve(&mut x)?;
         k.mul_with_terms(&x, &mut image, &mut terms);
         softest = size(&b) / size(&terms);
     }
-    if softest.is_nan() || softest < SINGULAR {
+    if softest.is_nan() || softest < rounding::SOLVE {
         return Err(missing_mode(largest(&x, |i| k.metric(i, 1.0)), softest, modes));
     }
     Ok(found)
@@ -124,7 +105,7 @@ pub(super) fn probe(factor: &Factor, k: &Multiple, fixing: &[usize], modes: usiz
 /// `|K+ K R|`, zero except for errors of R: the factor amplifies the residual K R as it amplifies rounding.
 pub(super) fn known_to(factor: &Factor, k: &Multiple, r: &Matrix) -> Result<f64> {
     let (mut turned, _) = k.mul_columns(r)?;
-    let mut worst: f64 = KNOWN;
+    let mut worst: f64 = NOISE;
     for j in 0..r.cols {
         factor.solve(turned.col_mut(j))?;
         worst = worst.max(SAMPLE * norm_max(turned.col(j)) / norm_max(r.col(j)));
@@ -140,15 +121,15 @@ pub(super) fn sharpened(k: &Multiple, r: &Matrix) -> Result<Option<Matrix>> {
     let error = resistance(&image, &terms);
     let is_rounding = |i: usize, j: usize| {
         let size = r.col(i).iter().zip(terms.col(j)).map(|(r, terms)| r.abs() * terms).sum::<f64>();
-        dot(r.col(i), image.col(j)).abs() <= KNOWN * size
+        dot(r.col(i), image.col(j)).abs() <= NOISE * size
     };
-    if error <= KNOWN || !(0..r.cols).all(|j| (0..=j).all(|i| is_rounding(i, j))) {
+    if error <= NOISE || !(0..r.cols).all(|j| (0..=j).all(|i| is_rounding(i, j))) {
         return Ok(None);
     }
     interrupt::check()?;
     tally::costly();
     let mut shifted = k.matrix.copied("a null space")?;
-    let theta = SHIFT * f64::EPSILON / error;
+    let theta = SHARPENING * f64::EPSILON / error;
     (0..r.rows).for_each(|i| shifted.val[shifted.ptr[i + 1] - 1] *= 1.0 + theta);
     let analysis = Arc::new(Analysis::new(&shifted, &vec![false; r.rows])?);
     let Ok(factor) = analysis.attempt(&shifted, k.by)? else { return Ok(None) };
@@ -162,7 +143,7 @@ pub(super) fn sharpened(k: &Multiple, r: &Matrix) -> Result<Option<Matrix>> {
     }
     let sharp = orthonormal(|i| k.metric(i, 1.0), &sharp)?;
     let (image, terms) = k.mul_columns(&sharp)?;
-    Ok((resistance(&image, &terms) <= KNOWN).then_some(sharp))
+    Ok((resistance(&image, &terms) <= NOISE).then_some(sharp))
 }
 
 /// `max_i |(K R)_i| / |(|K||R|)_i|` over the rows i: at an unknown that some vector hardly moves, others tell what is rounding.
@@ -176,7 +157,7 @@ pub(super) fn missing_mode(dof: usize, found: f64, given: usize) -> Error {
         "a mode is missing: the stiffness matrix has more than the {given} null vectors known; \
          one is largest at this dof (|K v| = {found:.1e} |K||v|)"
     );
-    Error::new(Kind::NullSpace, what).dof(dof).value(found).limit(SINGULAR)
+    Error::new(Kind::NullSpace, what).dof(dof).value(found).limit(rounding::SOLVE)
 }
 
 #[cfg(test)]
@@ -207,7 +188,7 @@ mod tests {
             let k = chain(&springs, 0.0);
             let sharp = sharpened(&k, &constants(1e-12)).unwrap().unwrap();
             let (image, terms) = k.mul_columns(&sharp).unwrap();
-            assert!(resistance(&image, &terms) <= KNOWN);
+            assert!(resistance(&image, &terms) <= NOISE);
             assert!(sharp.data.iter().all(|r| (r / sharp.data[0] - 1.0).abs() < 1e-11), "{sharp:?}");
         }
     }

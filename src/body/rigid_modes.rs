@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::linalg::vector::{first_non_finite, norm};
 use crate::linalg::{Matrix, SpdSolver};
+use crate::numbers::body::RIGID;
 use crate::platform::memory::{copied, headroom, reserved};
 
 /// Direction and position of each dof.
@@ -13,9 +14,6 @@ pub struct Coordinates {
     /// Position, length; coordinates beyond the given dimension are 0.
     place: Vec<[f64; 3]>,
 }
-
-/// Bound of the remainder after a rigid motion is decomposed.
-const RIGID: f64 = 1e-6;
 
 /// Bytes of the modes, per dof.
 const PER_DOF: usize = 48;

@@ -11,20 +11,15 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::linalg::{Cholesky, Csr, Multiple, Packed};
+use crate::numbers::body::{REACHED_ROUNDING, SHARE, TINY};
 use crate::platform::interrupt;
 use crate::platform::memory::{copied, zeros};
 use crate::platform::slabs::Slabs;
 
 /// Rounding of L, relative to its entries.
 const SINGLE: f64 = f32::EPSILON as f64 / 2.0;
-/// L is not rounded if a correction would leave more than this part of the error.
-const SHARE: f64 = 1e-3;
-/// A correction that leaves more than this part of the residual has reached rounding.
-const ROUNDED: f64 = 0.25;
 /// Limit of corrections, which an accepted factor never reaches.
 const CORRECTIONS: usize = 8;
-/// Squared pivots below this would lose digits in single precision.
-const TINY: f64 = 1e-60;
 
 /// The rounded factor and the matrix for its refinement.
 pub struct Rounded {
@@ -91,7 +86,7 @@ impl Rounded {
             let mut left = self.left(&load, x)?;
             let now = self.size(&left);
             // true also for NaN
-            if !(now > self.rounding * size && now < ROUNDED * before) {
+            if !(now > self.rounding * size && now < REACHED_ROUNDING * before) {
                 break;
             }
             near(&mut left)?;

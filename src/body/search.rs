@@ -15,7 +15,7 @@ use crate::body::misfit::Misfit;
 use crate::body::null_space::{exact, largest, refuse_overflow, Verified};
 use crate::body::part::{End, Soft};
 use crate::body::pilots::Pilots;
-use crate::body::probe::{known_to, probe, sharpened, Factor, MOST_ROUNDING, SINGULAR};
+use crate::body::probe::{known_to, probe, sharpened, Factor};
 use crate::body::soft::{are_resisted, known_to_entries, soft_motions};
 use crate::body::spectrum::{cut, may_be_weak, measured, to_measure};
 use crate::error::{Error, Kind, Result};
@@ -23,6 +23,8 @@ use crate::linalg::cholesky::Trailing;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::vector::ratio;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
+use crate::numbers::body::MOST_ROUNDING;
+use crate::numbers::rounding;
 use crate::platform::memory::{headroom, PRODUCTS};
 
 /// Number of dofs eliminated last, in the first attempt.
@@ -158,11 +160,11 @@ impl Search {
         };
         let relative = |(dof, pivot)| Breakdown { dof, relative_pivot: pivot / supported.diagonal(dof) };
         let below = |limit: f64| factor.pivots().map(relative).find(|pivot| pivot.relative_pivot < limit);
-        if let Some(breakdown) = below(SINGULAR) {
+        if let Some(breakdown) = below(rounding::SOLVE) {
             return self.missed_or_indefinite(breakdown);
         }
         if let Some(Breakdown { dof, .. }) =
-            below(self.digits.map_or(SINGULAR, Digits::pivot)).filter(|_| 2 * self.count <= MOST)
+            below(self.digits.map_or(rounding::SOLVE, Digits::pivot)).filter(|_| 2 * self.count <= MOST)
         {
             return Ok(Attempt::Missed(dof));
         }
@@ -341,7 +343,7 @@ impl Search {
             return Ok(Attempt::Missed(dof));
         };
         self.digits = self.digits.or_else(|| Digits::of_rounded(&self.k.matrix, FEWEST));
-        if relative_pivot < -self.digits.map_or(SINGULAR, Digits::pivot) {
+        if relative_pivot < -self.digits.map_or(rounding::SOLVE, Digits::pivot) {
             return Err(error);
         }
         Ok(Attempt::Missed(dof))

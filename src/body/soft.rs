@@ -9,15 +9,16 @@
 //! unknowns, where K+ is 0: for `u = K+ (f - B'l) + R a` they resist a with the forces `lambda_j a_j`, and no other
 //! motion.
 
-use crate::body::null_space::{orthonormal, ROUNDING};
-use crate::body::probe::{Factor, MOST_ERROR, SAMPLE};
+use crate::body::null_space::orthonormal;
+use crate::body::probe::Factor;
 use crate::body::spectrum::symmetric;
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::random::Random;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{axpy, dot, norm_max};
+use crate::linalg::vector::{axpy, dot, norm_max, NOISE};
 use crate::linalg::{Matrix, Multiple};
+use crate::numbers::body::{MOST_ERROR, SAMPLE};
 use crate::platform::memory::filled;
 
 const WHAT: &str = "the soft motions of a body";
@@ -118,7 +119,7 @@ fn corrected(factor: &Factor, k: &Multiple, mut r: Matrix) -> Result<Matrix> {
 /// a sample.
 pub fn known_to_entries(factor: &Factor, k: &Multiple, r: &Matrix) -> Result<f64> {
     let (_, terms) = k.mul_columns(r)?;
-    let (mut random, mut worst) = (Random::default(), ROUNDING);
+    let (mut random, mut worst) = (Random::default(), NOISE);
     for j in 0..r.cols {
         let mut moved = random.vector(r.rows, |i| f64::EPSILON * terms.get(i, j))?;
         factor.solve(&mut moved)?;
@@ -142,7 +143,7 @@ impl Resistance {
         }
         let size =
             |j: usize| r.col(j).iter().zip(terms.col(j)).map(|(v, terms)| v.abs() * terms).sum::<f64>();
-        Ok(Self { noise: (0..r.cols).map(|j| ROUNDING * size(j)).collect(), image })
+        Ok(Self { noise: (0..r.cols).map(|j| NOISE * size(j)).collect(), image })
     }
 
     /// `r_a'K r_b`

@@ -5,32 +5,16 @@
 use std::fmt;
 
 use crate::body::digits::Digits;
-use crate::body::null_space::ROUNDING as KNOWN;
+use crate::numbers::rounding;
+
 use crate::error::{Error, Kind, Result};
 use crate::linalg::dense::spectrum::symmetric_eigen;
-use crate::linalg::vector::dot;
+use crate::linalg::vector::{dot, NOISE};
 use crate::linalg::{Matrix, Multiple};
+use crate::numbers::body::{DEVIATIONS, GAP, MAY_BE_FREE, MEASURED, NEGATIVE, TRIFLE, WEAK_SPRINGS};
 
-/// An eigenvalue of the scaled S may belong to the null space if it is below this part of the largest.
-const SOFT: f64 = 1e-11;
-/// Motions softer than this, and the next one, are measured over the whole part if necessary.
-const MEASURED: f64 = 1e-3;
-/// Least ratio between the stiffest motion of the null space and the softest of the others, and between a certain support and
-/// the rounding of the entries.
-pub const GAP: f64 = 1e3;
-/// Eigenvalues below this part of the largest are rounding.
-const ROUNDING: f64 = 1e-14;
-/// Bound of rounding in standard deviations.
-const DEVIATIONS: f64 = 5.0;
-/// If rounding is below this part of the softest other motion, its effect on forces is within the certificate's
-/// tolerance.
-const TRIFLE: f64 = 1e-6;
 /// Weak springs of a host hold up to six rigid motions of a part, ...
 const RIGID: usize = 6;
-/// ... with a stiffness below this: 1e-6 of K at every unknown.
-const WEAK: f64 = 1e-5;
-/// theta below minus this is negative stiffness, whatever digits the entries have.
-const NEGATIVE: f64 = 1e-10;
 
 /// Motions with a resistance in K that may be rounding of its entries.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,14 +83,14 @@ pub enum MotionVerdict {
 pub fn cut(values: &[f64]) -> Option<(usize, f64)> {
     let m = values.len();
     let stiffest = values[m - 1];
-    if stiffest <= ROUNDING {
-        return Some((m, ROUNDING.recip()));
+    if stiffest <= rounding::SUM {
+        return Some((m, rounding::SUM.recip()));
     }
-    let relative = |k: usize| (values[k] / stiffest).max(ROUNDING);
-    if relative(0) >= SOFT {
-        return Some((0, relative(0) / ROUNDING));
+    let relative = |k: usize| (values[k] / stiffest).max(rounding::SUM);
+    if relative(0) >= MAY_BE_FREE {
+        return Some((0, relative(0) / rounding::SUM));
     }
-    let gaps = (1..m).filter(|&k| relative(k - 1) < SOFT).map(|k| (k, relative(k) / relative(k - 1)));
+    let gaps = (1..m).filter(|&k| relative(k - 1) < MAY_BE_FREE).map(|k| (k, relative(k) / relative(k - 1)));
     gaps.reduce(|best, gap| if gap.1 > best.1 { gap } else { best }).filter(|(_, gap)| *gap >= GAP)
 }
 
@@ -138,7 +122,7 @@ pub fn measured(k: &Multiple, digits: Option<Digits>, mut x: Matrix) -> Result<R
         x.col(c).iter().zip(of.col(c)).map(|(x, v)| size(*x) * v).sum()
     };
     let values = (0..q).map(|c| work(&image, c, |v| v)).collect();
-    let products: Vec<f64> = (0..q).map(|c| KNOWN * work(&terms, c, f64::abs)).collect();
+    let products: Vec<f64> = (0..q).map(|c| NOISE * work(&terms, c, f64::abs)).collect();
     let mut noise = products.clone();
     if let Some(digits) = digits {
         let entries = digits.noise(&k.matrix, &x)?;
@@ -203,7 +187,7 @@ impl Ritz {
         let explained = self.explained();
         let most = (0..explained).map(|k| noise[k].max(values[k].abs())).fold(0.0, f64::max);
         match values.get(explained) {
-            None => return MotionVerdict::Free { dimension: explained, gap: ROUNDING.recip() },
+            None => return MotionVerdict::Free { dimension: explained, gap: rounding::SUM.recip() },
             Some(next) if explained > 0 && *next >= GAP * most => {
                 return MotionVerdict::Free { dimension: explained, gap: next / most }
             }
@@ -235,9 +219,10 @@ impl Ritz {
     /// as the bending of a very slender body.
     pub fn weak(&self, free: usize) -> usize {
         let values = &self.values;
-        let apart = |q: &usize| values[q - 1] <= WEAK && values[*q] >= GAP * values[q - 1].max(ROUNDING);
+        let apart =
+            |q: &usize| values[q - 1] <= WEAK_SPRINGS && values[*q] >= GAP * values[q - 1].max(rounding::SUM);
         let springs = (free + 1..values.len()).take_while(|q| *q <= RIGID).filter(apart).last();
-        let slender = (free + 1..values.len()).take_while(|q| values[q - 1] < SOFT).last();
+        let slender = (free + 1..values.len()).take_while(|q| values[q - 1] < MAY_BE_FREE).last();
         springs.max(slender).map_or(0, |q| q - free)
     }
 
@@ -247,7 +232,7 @@ impl Ritz {
         let resisted = self.values[..motions].iter().fold(0.0f64, |most, v| most.max(v.abs()));
         let rounding = self.noise[..motions].iter().fold(0.0f64, |most, v| most.max(*v));
         let trifle = self.values.get(motions).filter(|_| free).map_or(0.0, |next| TRIFLE * next);
-        let digits = digits.filter(|_| motions > 0 && (rounding > trifle || resisted >= SOFT))?;
+        let digits = digits.filter(|_| motions > 0 && (rounding > trifle || resisted >= MAY_BE_FREE))?;
         Some(Doubt { digits, motions, resisted, rounding, free })
     }
 }

@@ -10,11 +10,12 @@
 
 use std::rc::Rc;
 
-use crate::certificate::clusters::{Clusters, Metered, CARRIED};
+use crate::certificate::clusters::{Clusters, Metered};
 use crate::constraints::RowSet;
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::{norm_max, NOISE};
+use crate::numbers::certificate::CARRIED;
 use crate::platform::memory::{filled, zeros};
 
 const WHAT: &str = "the metric of an island";

@@ -8,11 +8,9 @@ use crate::constraints::RowSet;
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::sparse::csr::by_columns;
+use crate::numbers::certificate::CARRIED;
 use crate::platform::memory::filled;
 
-/// Rows give a carried unknown more than this times its own stiffness: with a smaller ratio kp / k an error of 1e-6 in a
-/// force moves a gap by more than 1e-8 F / kp.
-pub(super) const CARRIED: f64 = 1e2;
 /// Most unknowns of a cluster: those of a node. Larger clusters, and those that rows hold in part, deform, as rubber on steel
 /// does.
 const CLUSTER: usize = 6;

@@ -10,16 +10,13 @@ use crate::error::Result;
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, norm, norm_max, ratio};
 use crate::linalg::{Analysis, Csr, Matrix};
+use crate::numbers::certificate::{NEIGHBOURS, RESISTED};
 use crate::platform::interrupt;
 
-/// Values of delta relative to the largest entry of A'A; `PASSES` solutions with each. A joint resists motions by more
-/// than the root of the last.
-const RESISTED: [f64; 5] = [0.3, 1e-3, 1e-6, 1e-9, 1e-13];
+/// Solutions with each value of `RESISTED`.
 const PASSES: usize = 4;
 /// `A b` is rounding if it is below this part of `|A||b|`.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// Weight of the deformation of neighbours.
-const NEIGHBOURS: f64 = 0.5;
 
 /// delta, n, length.
 pub(super) struct Deformation {

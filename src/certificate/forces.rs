@@ -9,11 +9,8 @@ use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{ratio, weighted_norm};
 use crate::linalg::Matrix;
+use crate::numbers::certificate::EXCUSED;
 use crate::platform::memory::filled;
-
-/// Limit of the residual that rounding may excuse in the equilibrium of one body, relative to the forces of the island:
-/// if a body has moved so far that its strain is lost, the answer is not known.
-const EXCUSED: f64 = 1e-2;
 
 /// Measures of the forces.
 pub(super) struct Forces {

@@ -8,9 +8,7 @@ use crate::certificate::row::JudgedRow;
 use crate::certificate::{positive, share, worse, FrictionState, NOISE};
 use crate::constraints::{FrictionNode, RowKind};
 use crate::linalg::vector::weighted_norm;
-
-/// Limit of the slip relative to its tolerance, to avoid overflow: it is far beyond any bound.
-const FAR: f64 = 1e100;
+use crate::numbers::certificate::OVERFLOW;
 
 /// A node and its limits. With one tangential row, the second component is 0.
 pub(super) struct JudgedNode {
@@ -102,7 +100,7 @@ impl JudgedNode {
     fn lawful(&self, gap_limit: f64) -> [f64; 2] {
         let unit = self.force_limit;
         let far = share(length(self.slip), gap_limit);
-        let far = if far > FAR { FAR } else { far };
+        let far = if far > OVERFLOW { OVERFLOW } else { far };
         let along = self.slip.map(|part| far * share(part, length(self.slip)));
         held(self.force.map(|part| share(part, unit)), along, share(self.bound, unit))
     }

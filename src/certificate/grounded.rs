@@ -2,11 +2,8 @@
 
 use crate::body::Stiffness;
 use crate::error::Result;
+use crate::numbers::certificate::GROUNDED;
 use crate::platform::memory::zeros;
-
-/// Limit of K_jj / T_j. For chains, trusses, beams and solids, even a million times as stiff as their support, the ratio
-/// is at most 4.5.
-const GROUNDED: f64 = 1e3;
 
 /// The unknowns with `K_jj > 1000 T_j`, force / length, with the stiffness contribution of the neighbours `T_j = sum_{i
 /// != j} K_ij^2 / K_ii`. An unknown without neighbours is grounded if it has stiffness. Ascending; empty for a body with

@@ -9,14 +9,12 @@ use crate::constraints::accumulator::Accumulator;
 use crate::error::Result;
 use crate::linalg::graph::components;
 use crate::linalg::{Csr, Symmetric};
+use crate::numbers::linalg::ROOT;
+use crate::numbers::rows::REMAINDER;
 use crate::platform::memory::{filled, headroom};
 
 /// Limit of rows per cluster; mortar rows can connect a whole surface.
 const LARGEST: usize = 32;
-/// A cluster may be redundant if the squared remainder of one of its unit rows does not exceed this.
-const DEPENDENT: f64 = 1e-8;
-/// A contact row is not changed if its remainder does not exceed this part of it.
-const REMAINDER: f64 = 1e-4;
 
 const WHAT: &str = "the decoupling of rows";
 
@@ -179,7 +177,7 @@ impl<'a> Orthogonalisation<'a> {
         for (at, &i) in cluster.iter().enumerate() {
             let parts = self.cleared(i, &cluster[..at]);
             let square = self.sum.square(self.given.metric);
-            if square <= DEPENDENT {
+            if square <= ROOT {
                 cluster.iter().for_each(|&i| self.changed[i] = None);
                 return false;
             }

@@ -5,11 +5,12 @@ mod factors;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::constraints::friction::factors::{check_factors, entries, ratio, FACTORS};
+use crate::constraints::friction::factors::{check_factors, entries, ratio};
 use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::error::{Error, Result, INDEX};
 use crate::linalg::vector::{first_non_finite, NOISE};
 use crate::linalg::Csr;
+use crate::numbers::rows::FACTORS;
 use crate::platform::memory::filled;
 
 /// The law of one node: `|lambda_t| <= bound + coefficient x lambda_n`.

@@ -4,9 +4,7 @@ use std::collections::HashMap;
 
 use crate::constraints::RowKind;
 use crate::linalg::Csr;
-
-/// Two rows are parallel if their unit vectors differ by less than this.
-const PARALLEL: f64 = 1e-12;
+use crate::numbers::rounding;
 
 /// The stack of contact rows, equality rows and tangential rows, and which of them are parallel.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -83,7 +81,7 @@ fn parallel(matrix: &Csr, i: usize, j: usize, metric: &[f64]) -> Option<f64> {
             matrix.row(i).zip(matrix.row(j)).map(|((k, a), (_, b))| (a - sign * b).powi(2) / metric[k]);
         terms.sum::<f64>().sqrt()
     };
-    [1.0, -1.0].into_iter().find(|&sign| distance(sign) <= PARALLEL)
+    [1.0, -1.0].into_iter().find(|&sign| distance(sign) <= rounding::METHOD)
 }
 
 #[cfg(test)]

@@ -28,9 +28,6 @@ use crate::linalg::vector::first_non_finite;
 use crate::linalg::Csr;
 use crate::platform::memory::{copied, zeros};
 
-/// A row below this part of its neighbours may be rounding that the host has left there.
-pub const SHORT: f64 = 1e-12;
-
 /// Rows as given, counting from 0; without `body` the dofs count through all bodies.
 #[derive(Debug, Clone, Copy)]
 pub struct RowsInput<'a> {

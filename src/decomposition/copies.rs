@@ -2,11 +2,10 @@
 
 use crate::error::Result;
 use crate::model::{Model, Parts};
+use crate::numbers::rows::SLACK;
 use crate::platform::memory::filled;
 
 const WHAT: &str = "the copies of unknowns";
-/// Rows of the host do not act on a copy with less than this part of the stiffness of the stiffest copy.
-const SLACK: f64 = 1e-3;
 
 /// The copies of every unknown of a body with several parts.
 pub struct Copies {

@@ -13,17 +13,7 @@
 //! model uses only counts: the choice does not depend on the machine.
 
 use crate::linalg::Packed;
-
-/// Expected products with F of a solve and some load steps.
-const PRODUCTS: f64 = 50.0;
-const REACH: f64 = 0.4;
-const RATE: f64 = 5.0;
-/// Bytes of a factor that the cache keeps between forward and backward substitution, and the part of them that is read
-/// again.
-const CACHE: f64 = 8e6;
-const AGAIN: f64 = 0.25;
-/// Columns of a factor with fewer entries take as long: their order has to be found, too.
-const THIN: f64 = 10.0;
+use crate::numbers::dual::{AGAIN, CACHE, PRODUCTS, RATE, REACH, THIN};
 
 /// Numbers of distinct rows of a body: all, and those that are not tangential.
 #[derive(Debug, Clone, Copy, Default)]

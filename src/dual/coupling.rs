@@ -9,19 +9,12 @@ use crate::linalg::graph::components;
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::NOISE;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
+use crate::numbers::dual::PROBES;
+use crate::numbers::linalg::{ROOT, SHIFT};
 use crate::platform::memory::{copied, headroom};
 
-/// A pivot below this means that the rows of its block may be linearly dependent.
-const SINGULAR: f64 = 1e-8;
-/// Values added to the diagonal to find such blocks; the first with which Cholesky succeeds is used. The pivot of a
-/// dependent row is this value divided by the square of the row's coefficient in the dependence, which is far below
-/// `SINGULAR`.
-const PROBES: [f64; 4] = [0.0, 1e-13, 1e-12, 1e-11];
 /// Limit of rows in a block whose pseudo-inverse is formed.
 const DENSE: usize = 200;
-/// Added to the diagonal of larger blocks: it affects the kernel of W, which B' maps to zero, up to rounding of 1e-16 /
-/// 1e-10.
-const SHIFT: f64 = 1e-10;
 
 /// Rows that are combinations of the remaining rows, by the pivots of `B D^-1 B' + C`; `columns`: `D^-1/2 B'`,
 /// `compliance`: the diagonal of C.
@@ -89,7 +82,7 @@ impl Coupling {
             let mut w = self.on(&vec![false; self.whole.order()])?;
             (0..w.order()).for_each(|i| shift(&mut w, i, probe));
             if let Ok(factor) = self.analysis.attempt(&w, 1.0)? {
-                let weak = factor.pivots().filter(|(_, pivot)| *pivot <= SINGULAR);
+                let weak = factor.pivots().filter(|(_, pivot)| *pivot <= ROOT);
                 return Ok(weak.map(|(row, _)| row).collect());
             }
         }

@@ -9,6 +9,7 @@ use crate::dual::coupling::{Coupling, FaceCoupling};
 use crate::dual::preconditioner::Preconditioner;
 use crate::error::Result;
 use crate::linalg::Csr;
+use crate::numbers::rounding;
 use crate::platform::memory::zeros;
 use crate::platform::{interrupt, tally};
 
@@ -20,9 +21,6 @@ pub struct TurnedRow {
     pub along: [f64; 2],
     pub damping: f64,
 }
-
-/// Added to the diagonal of H, relative to its largest entry, for rows without entries.
-const SHIFT: f64 = 1e-12;
 
 /// M of one face.
 pub struct TurnedFace<'a> {
@@ -57,7 +55,7 @@ impl Preconditioner {
         }
         let square = |i: usize| rows.row(i).map(|(_, v)| v * v).sum::<f64>() + added[i];
         let mut diagonal: Vec<f64> = (0..face.len()).map(square).collect();
-        let shift = SHIFT * diagonal.iter().fold(0.0, |largest: f64, v| largest.max(*v));
+        let shift = rounding::METHOD * diagonal.iter().fold(0.0, |largest: f64, v| largest.max(*v));
         let shift = if shift > 0.0 { shift } else { 1.0 };
         diagonal.iter_mut().for_each(|v| *v += shift);
         let scale: Vec<f64> = diagonal.iter().map(|v| v.sqrt().recip()).collect();

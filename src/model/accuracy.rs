@@ -10,18 +10,14 @@ use crate::error::Result;
 use crate::linalg::vector::{norm_max, NOISE};
 use crate::model::contents::Model;
 use crate::model::row_sets::empty_row_contradicts;
+use crate::numbers::data::{BINARY, MARGINAL, MOST_BY_COORDINATES};
 use crate::platform::memory::filled;
 
 /// A right-hand side below this part of the length is not the rounding of a difference of such lengths: it is exact.
 const LAST_DIGIT: f64 = f64::EPSILON / 64.0;
 
-/// A part of the load that nothing holds makes the answer marginal up to this multiple of the accuracy of the data.
-const MARGINAL: f64 = 1e3;
-
 /// Digits of coordinates that have been rounded: fewer may be exact, more are rounding of f64.
 const DIGITS: Range<i32> = 5..13;
-/// Largest accuracy that digits of coordinates may show.
-const MOST: f64 = 1e-6;
 /// Number of points whose digits are counted.
 const SAMPLE: usize = 256;
 
@@ -98,7 +94,7 @@ impl Model {
     pub fn accuracy_of_coordinates(&self) -> f64 {
         let given = self.bodies.iter().filter_map(|given| given.body.coordinates.as_ref());
         let printed = given.map(|coordinates| of_last_digit(coordinates.places())).fold(0.0, f64::max);
-        self.settings.data_accuracy.max(printed.min(MOST))
+        self.settings.data_accuracy.max(printed.min(MOST_BY_COORDINATES))
     }
 }
 
@@ -112,7 +108,7 @@ fn of_last_digit(places: &[[f64; 3]]) -> f64 {
         Some((exponent.parse::<i32>().ok()?, digits.chars().filter(char::is_ascii_digit).count() as i32))
     };
     // multiples of 2^-20 are exact
-    let all: Vec<_> = some.filter(|x| (*x * 1_048_576.0).fract() != 0.0).filter_map(decimal).collect();
+    let all: Vec<_> = some.filter(|x| (*x * BINARY).fract() != 0.0).filter_map(decimal).collect();
     let most = all.iter().map(|number| number.1).max().unwrap_or(0);
     let long = all.iter().filter(|number| number.1 + 2 >= most).count();
     if !DIGITS.contains(&most) || 2 * long < all.len() {

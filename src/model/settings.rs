@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::model::words::{
     FinishBy, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word,
 };
+use crate::numbers::data::{MANY, NO_LIMIT};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum OptionValue {
@@ -31,9 +32,6 @@ enum Location {
     Str(fn(&mut Settings) -> &mut dyn Word),
 }
 
-const NO_LIMIT: f64 = 1e300;
-/// 2^53: every integer up to this value is exact in double precision.
-const MANY: f64 = 9_007_199_254_740_992.0;
 /// The range of an option with words.
 const NO_RANGE: std::ops::RangeInclusive<f64> = 0.0..=0.0;
 

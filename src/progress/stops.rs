@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use crate::error::Result;
+use crate::numbers::setup::NEXT_MESSAGE;
 use crate::platform::interrupt::{Clock, Interrupt};
 
 /// Conditions that end a call, and the time since it began.
@@ -34,7 +35,7 @@ impl Stops {
         let hearer = move |part: &'static str, what: &'static str, count: usize| {
             let now = clock();
             let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
-            if now - *last < f64::max(1.0, 0.1 * now) {
+            if now - *last < f64::max(1.0, NEXT_MESSAGE * now) {
                 return Ok(());
             }
             *last = now;

@@ -4,6 +4,8 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm};
 use crate::linalg::{Csr, Matrix, Runs};
+use crate::numbers::linalg::{ROOT, SHIFT};
+use crate::numbers::qp::{DROP, ERROR_OF_ALPHA};
 use crate::platform::memory::headroom;
 use crate::platform::{interrupt, tally};
 use crate::qp::between_solves::BetweenSolves;
@@ -89,11 +91,9 @@ impl<'a> Coarse<'a> {
 
     /// `G D G' + rho I`, D = diag(`weights`) >= 0; none if there are no modes or the weights resist some mode too little.
     pub fn weighted(&mut self, weights: &[f64], rho: f64) -> Result<Option<CoarseInverse>> {
-        /// Added part of the diagonal entry in `G G'`, for motions that only rows with vanishing weights resist.
-        const HELD: f64 = 1e-10;
         self.factorisations += usize::from(self.dimension() > 0);
         let rho = rho / (self.space.unit * self.space.unit);
-        let held = |whole: f64| rho + if whole > 0.0 { HELD * whole } else { 1.0 };
+        let held = |whole: f64| rho + if whole > 0.0 { SHIFT * whole } else { 1.0 };
         self.space.weighted(self.g_transposed, |i| weights[i], held)
     }
 
@@ -102,9 +102,6 @@ impl<'a> Coarse<'a> {
         /// The rounding of `G_F v` is large relative to the part of weakly resisted motions; that of the remainder is
         /// not.
         const PASSES: usize = 3;
-        /// Limit of the error: the residual `G_F (v - G'alpha)` times the inverse root of the smallest expected
-        /// eigenvalue of W_F (the factor is r for a chain of r motions), relative to the remainder of v.
-        const ERROR: f64 = 0.1;
         let amplified = self.dimension() as f64;
         let mut rest: Vec<f64> = v.iter().zip(held).map(|(v, held)| if *held { 0.0 } else { *v }).collect();
         let image = self.image(&rest);
@@ -113,7 +110,7 @@ impl<'a> Coarse<'a> {
             let image = self.space.rows.residual(held, v, &alpha, &mut rest);
             let unit = self.space.unit;
             let mut face = self.on(held)?;
-            let known = !face.is_weak() && amplified * norm(&image) <= ERROR * unit * norm(&rest);
+            let known = !face.is_weak() && amplified * norm(&image) <= ERROR_OF_ALPHA * unit * norm(&rest);
             if known || pass == PASSES || !Rung::Fit.is_tried() {
                 break;
             }
@@ -180,10 +177,9 @@ impl OnFace<'_> {
 
     /// `W_F^-1 rhs`, or `(W_F + 1e-8 N N')^-1 rhs` if W_F has the kernel N.
     pub fn solve_regularised(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
-        const WEIGHT: f64 = 1e-8;
         let mut x = self.solve(rhs)?;
         if let Some(solver) = self.singular() {
-            solver.add_kernel_part(1.0 / (WEIGHT * self.unit * self.unit), rhs, &mut x);
+            solver.add_kernel_part(1.0 / (ROOT * self.unit * self.unit), rhs, &mut x);
         }
         Ok(x)
     }
@@ -211,8 +207,6 @@ impl<'a> AnswerFace<'a> {
     /// Basis of the free motions, `|G_F a| <= rounding |G| |a|`, r x deficiency, which the rows that are not held do not
     /// resist.
     pub fn undetermined(&mut self) -> Result<Matrix> {
-        /// Entries of a basis vector below this, in units of `rounding`, are rounding.
-        const DROP: f64 = 16.0;
         let (dimension, rounding) = (self.coarse.dimension(), self.coarse.rounding);
         let face = self.coarse.on(self.held)?;
         let Some(solver) = face.singular() else { return Matrix::zeros(dimension, 0) };
@@ -222,13 +216,11 @@ impl<'a> AnswerFace<'a> {
 
     /// The motion a without the part that the rows resist well: `a - (W_F + rho I)^-1 W_F a`.
     pub fn hardly_resisted(&mut self, a: &[f64]) -> Result<Vec<f64>> {
-        /// rho, relative to the largest diagonal entry of `G G'`.
-        const RHO: f64 = 1e-8;
         let (mut along, mut left) = (vec![0.0; self.held.len()], a.to_vec());
         self.coarse.g_transposed.mul(a, &mut along);
         along.iter_mut().zip(self.held).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
         let weights: Vec<f64> = self.held.iter().map(|held| f64::from(u8::from(!held))).collect();
-        let (image, rho) = (self.coarse.image(&along), RHO * self.coarse.largest());
+        let (image, rho) = (self.coarse.image(&along), ROOT * self.coarse.largest());
         if let Some(weighted) = self.coarse.weighted(&weights, rho)? {
             axpy(-1.0, &weighted.solve(&image)?, &mut left);
         }

@@ -3,15 +3,11 @@
 //! docs/method.md.
 
 use crate::linalg::vector::{add_multiples, axpy, dot, dots, norm, norm_max, power_of_two_below, LONG};
+use crate::numbers::linalg::DEPENDENT;
+use crate::numbers::rounding;
 
 /// More directions than this cost more than the products they save.
 pub const MOST: usize = 100;
-/// A direction is not added if less than this part of its curvature is outside the span of the others.
-const NEW: f64 = 1e-10;
-/// Directions are conjugate up to rounding if their energy product is below this part of their energies.
-const ROUNDED: f64 = 1e-12;
-/// Entries of a row below this part of the largest are rounding: the row depends on others that are held.
-const ROUNDING: f64 = 1e-13;
 
 /// A direction p and, behind it, its image A p.
 type Pair = Box<[f64]>;
@@ -40,14 +36,14 @@ impl Conjugate {
         let mut pair: Pair = [p, image].concat().into();
         for pairs in self.groups(m) {
             let shares = self.shares(&directions(pairs), &pair[m..], -1.0);
-            let rounded = ROUNDED * (whole / self.curvature).sqrt();
+            let rounded = rounding::METHOD * (whole / self.curvature).sqrt();
             if m < LONG || norm_max(&shares) > rounded {
                 add_multiples(&shares, &both(pairs), &mut pair);
             }
         }
         let (p, image) = pair.split_at(m);
         let curvature = dot(p, image);
-        if whole > 0.0 && curvature > NEW * whole {
+        if whole > 0.0 && curvature > DEPENDENT * whole {
             if self.pairs.is_empty() {
                 self.curvature = power_of_two_below(curvature / dot(p, p));
             }
@@ -101,7 +97,7 @@ impl Conjugate {
         let mut w: Vec<f64> = self.pairs.iter().map(|pair| pair[i]).collect();
         let Some(&last) = w.last() else { return };
         let length = norm(&w);
-        if length <= ROUNDING * directions(&self.pairs).into_iter().map(norm_max).fold(0.0, f64::max) {
+        if length <= rounding::SOLVE * directions(&self.pairs).into_iter().map(norm_max).fold(0.0, f64::max) {
             self.pairs.iter_mut().for_each(|pair| pair[i] = 0.0);
             return;
         }

@@ -10,17 +10,13 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm};
 use crate::linalg::Csr;
+use crate::numbers::qp::{CLOSE, COMPLEMENTARITY, INTERIOR_ACCURACY};
 use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::space::CoarseInverse;
 use crate::qp::Qp;
 
 const STEPS: usize = 40;
-/// Accuracy of the equations, and of products of forces and their multipliers relative to squared forces.
-const ACCURACY: f64 = 1e-7;
-const COMPLEMENTARITY: f64 = 1e-12;
-/// Part of the step to the next bound.
-const CLOSE: f64 = 0.995;
 
 /// `(K + G D G')^-1`
 pub trait Inverse {
@@ -78,8 +74,9 @@ impl Interior<'_> {
             let (left, apart) = (self.left(stiffness, &at)?, self.apart(&at));
             let mut terms = vec![0.0; left.len()];
             self.rows.mul_transposed_abs_add(&at.force, &mut terms);
-            let met = stiffness.size(&left) <= ACCURACY * (stiffness.size(self.e) + stiffness.size(&terms))
-                && norm(&apart) <= ACCURACY * self.lengths(&at);
+            let met = stiffness.size(&left)
+                <= INTERIOR_ACCURACY * (stiffness.size(self.e) + stiffness.size(&terms))
+                && norm(&apart) <= INTERIOR_ACCURACY * self.lengths(&at);
             if met && mean <= COMPLEMENTARITY * self.mean(&at.force, &at.force) {
                 break;
             }

@@ -37,6 +37,7 @@ pub use rungs::{during, Rung, Tries};
 
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};
+use crate::numbers::rounding;
 
 /// The problem; `G` is given as `G'`, m x r; the modes of each body are divided by one number so that `|G_p|` = 1.
 #[derive(Clone, Copy)]
@@ -65,7 +66,7 @@ impl<'a> Qp<'a> {
         e: &'a [f64],
         bounded: &'a [bool],
     ) -> Self {
-        let (blocks, rounding) = (&[], 1e-14);
+        let (blocks, rounding) = (&[], rounding::SUM);
         Self { a, b, g_transposed, blocks, rounding, e, bounded, preconditioner: None, kept: None }
     }
 }

@@ -4,6 +4,8 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm, ratio};
+use crate::numbers::qp::{BALANCED, CUT_STEP, PROJECTED, STAGNATED};
+use crate::numbers::rounding;
 use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::interior::inside;
@@ -16,18 +18,9 @@ pub struct Projected {
 }
 
 const NEWTON_STEPS: usize = 100;
-/// A Newton step counts as cut if rows shorten it below this part; after `PATIENCE` cut steps an interior point method
-/// follows.
-const CUT: f64 = 0.9;
 const PATIENCE: usize = 4;
 /// Newton steps after it, from a multiplier close to the solution if there is one.
 const FURTHER_STEPS: usize = 30;
-/// `|e - G l| <= ACCURACY (|e| + |G||l|)` is accepted; `STAGNATED` if no step improves it any more.
-const ACCURACY: f64 = 1e-12;
-const STAGNATED: f64 = 1e-10;
-/// Limit of the residual relative to `|e| + |G||y|`: if nothing balances e, forces grow until their rounding hides the
-/// residual.
-const MET: f64 = 1e-6;
 /// A sum is zero if it is below this part of its terms: if the bounds leave only one point, all rows must reach them.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -99,12 +92,12 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
     }
     let mut error = now.error(qp, coarse);
     let given = norm(qp.e) + norm(&coarse.terms(y));
-    let is_met = |now: &Trial| norm(&now.residual) <= MET * given;
+    let is_met = |now: &Trial| norm(&now.residual) <= BALANCED * given;
     let (mut cuts, mut step, mut end) = (0, 0, NEWTON_STEPS);
     while step < end {
         interrupt::reached("Newton steps of a projection", step)?;
         // J2
-        if error <= ACCURACY && is_met(&now) {
+        if error <= PROJECTED && is_met(&now) {
             return now.done(qp, coarse).map(Some);
         }
         if cuts == PATIENCE && Rung::ProjectionInside.is_tried() {
@@ -121,7 +114,7 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         let face: Vec<bool> = (0..y.len()).map(|i| held[i] || (qp.bounded[i] && leaves(i))).collect();
         let mut free = vec![0.0; qp.e.len()];
         coarse.on(&face)?.add_free_part(qp.e, &mut free);
-        if norm(&free) > MET * given && target.is_endless_along(coarse, &free) {
+        if norm(&free) > BALANCED * given && target.is_endless_along(coarse, &free) {
             return Ok(None);
         }
         let mut on_face = coarse.on(&face)?;
@@ -136,7 +129,7 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
                 Ok(None)
             };
         };
-        cuts += usize::from(t < CUT);
+        cuts += usize::from(t < CUT_STEP);
         let mut beta = now.beta.clone();
         axpy(t, &direction, &mut beta);
         let next = Trial::new(target, coarse, beta);
@@ -183,9 +176,9 @@ impl Target<'_> {
             }
         }
         turns.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let none = 1e-14 * whole;
+        let none = rounding::SUM * whole;
         let (mut at, mut derivative) = (0.0, -dot(&now.residual, step));
-        let flat = 1e-12 * derivative;
+        let flat = rounding::METHOD * derivative;
         for (t, change) in turns {
             let there = derivative + slope * (t - at);
             if there >= 0.0 && slope > none {

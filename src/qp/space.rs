@@ -6,9 +6,10 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::{Blocks, ClusterInverse};
 use crate::linalg::semidefinite::faces::FaceFactors;
-use crate::linalg::semidefinite::{is_regular, WEAK};
+use crate::linalg::semidefinite::is_regular;
 use crate::linalg::vector::{norm_max, power_of_two_below};
 use crate::linalg::{Cholesky, Csr, Matrix, Runs};
+use crate::numbers::linalg::WEAK;
 use crate::platform::{interrupt, tally};
 
 /// Depends on G and on which rows faces may hold, not on loads and gaps.

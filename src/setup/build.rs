@@ -11,6 +11,7 @@ use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::Shared;
 use crate::model::{Lengths, Method, Model, Preconditioning, Settings};
+use crate::numbers::setup::{ASSEMBLED, ASSEMBLED_LUMPED};
 use crate::platform::memory::reserved;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::qp::BetweenSolves;
@@ -191,8 +192,8 @@ fn metric(model: &Model, island: &Island) -> Result<Metric> {
 fn assembled(settings: &Settings) -> f64 {
     match settings.preconditioner {
         Preconditioning::None => 1.0,
-        Preconditioning::Dirichlet => 0.6,
-        Preconditioning::Automatic | Preconditioning::Lumped => 0.98,
+        Preconditioning::Dirichlet => ASSEMBLED,
+        Preconditioning::Automatic | Preconditioning::Lumped => ASSEMBLED_LUMPED,
     }
 }
 

@@ -15,6 +15,7 @@ use crate::dual::{DistinctRows, Size};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Multiple, Symmetric};
 use crate::model::Model;
+use crate::numbers::setup::{ANALYSED, FACTORISED, WORK};
 use crate::platform::slabs::Slabs;
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
@@ -26,10 +27,6 @@ use crate::setup::rounding::may_be_rounded;
 
 /// Number of analyses for a pattern that a body tries before it makes a new one.
 const TRIED: usize = 8;
-
-/// Mean fractions of a setup completed after the analyses and after the factorisations.
-const ANALYSED: f64 = 0.3;
-const FACTORISED: f64 = 0.9;
 
 impl Prepared {
     /// Makes K+ of the bodies that have none; `rows`: number of distinct rows on each. Returns the dual operators suited
@@ -102,7 +99,7 @@ impl Prepared {
             }
         }
         // operations grow like the power 3/2 of the entries
-        let weights = own.iter().map(|(_, bytes, ..)| (*bytes as f64).powf(1.5)).collect();
+        let weights = own.iter().map(|(_, bytes, ..)| (*bytes as f64).powf(WORK)).collect();
         let part = SetupPart::of(model.threads(), weights, FACTORISED);
         let slabs =
             Slabs::of(own.iter().filter(|(p, ..)| rounded[*p]).map(|(_, bytes, ..)| bytes / 2).sum())?;

@@ -6,12 +6,10 @@ use std::time::Instant;
 use crate::body::{Body, GeneralizedInverse, HostMultiple, Modes, NullSpaceInput, TOGETHER};
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
+use crate::numbers::setup::TRIED;
 use crate::progress::{Phase, SetupPart, Watch};
 use crate::setup::plans::of_coordinates;
 use crate::setup::prepared::{Inverse, Prepared};
-
-/// Fraction of a setup completed after the functions of the host are checked.
-const TRIED: f64 = 0.03;
 
 impl Prepared {
     /// Makes K+ of the host's bodies that have none, and checks their functions.

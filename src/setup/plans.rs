@@ -6,11 +6,9 @@ use crate::body::{check_diagonal, Body, Digits, GeneralizedInverse, Modes, Pilot
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
 use crate::model::Model;
+use crate::numbers::setup::NULL_SPACES;
 use crate::progress::{SetupPart, Watch};
 use crate::setup::prepared::PreparedBody;
-
-/// Mean fraction of a setup completed after the null spaces.
-const NULL_SPACES: f64 = 0.05;
 
 /// Null spaces and fixing dofs of the pending bodies.
 pub(super) fn plans(

@@ -8,6 +8,7 @@ use crate::linalg::hash::hash;
 use crate::linalg::vector::NOISE;
 use crate::linalg::Csr;
 use crate::model::Lengths;
+use crate::numbers::setup::UNEVEN_STIFFNESS;
 use crate::setup::islands::{Island, Members};
 use crate::setup::scaling::Scaling;
 
@@ -31,11 +32,7 @@ pub struct DualRows {
     pub uneven: bool,
 }
 
-/// Limit of the ratio of the bodies' parts of `b D^-1 b'`: beyond it, rounding of one part is large relative to the
-/// other.
-const UNEVEN: f64 = 1e4;
-
-/// Some row joins bodies whose parts of `b D^-1 b'` have a ratio above `UNEVEN`.
+/// Some row joins bodies whose parts of `b D^-1 b'` have a ratio above `UNEVEN_STIFFNESS`.
 fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
     (0..rows.rows()).any(|i| {
         let mut shares: Vec<(usize, f64)> = Vec::new();
@@ -48,7 +45,7 @@ fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
             }
         }
         let most = shares.iter().map(|share| share.1).fold(0.0, f64::max);
-        shares.iter().any(|share| UNEVEN * share.1 < most)
+        shares.iter().any(|share| UNEVEN_STIFFNESS * share.1 < most)
     })
 }
 

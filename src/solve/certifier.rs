@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::certificate::Judgement;
 use crate::error::{Kind, Result};
 use crate::linalg::vector::norm;
+use crate::numbers::solve::SETTLED;
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
 use crate::qp::{AcceptanceTest, Effort, Mended, Rung, Solution, Verdict};
@@ -50,9 +51,6 @@ pub struct Certifier<'a> {
     /// Ratio of the worst entry of the certificate of the last point that was refused.
     missed: Option<f64>,
 }
-
-/// Amplitudes of motions with negative stiffness have settled if they differ by less.
-const SETTLED: f64 = 1e-11;
 
 /// A point (x, alpha) of the dual problem whose answer has passed.
 struct Accepted {

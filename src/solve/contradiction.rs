@@ -4,17 +4,14 @@ use crate::constraints::RowKind;
 use crate::error::{Error, Result};
 use crate::linalg::vector::{dot, norm, norm_max};
 use crate::linalg::{Csr, Operator};
+use crate::numbers::rounding;
+use crate::numbers::solve::{BEYOND, MAY_CONTRADICT};
 use crate::platform::interrupt;
 use crate::qp::{minimise, AcceptanceTest, Limits, Observer, Qp, StepReport};
 use crate::solve::case::Case;
 use crate::solve::diagnosis::Contradictions;
 use crate::solve::gaps::Gaps;
 
-/// A gap that exceeds all motion demanded by rows by this factor takes part in no contradiction that could be proved.
-const BEYOND: f64 = 1e6;
-/// Rows are tested further for a contradiction if the minimum of the search, relative to 1, is below this value: a
-/// displacement 1e3 times the largest gap leaves a minimum of this size.
-const UNCERTAIN: f64 = 1e-6;
 /// Limit of multiplications for the finite method; above it, the method for many rows comes first.
 const SMALL: usize = 100_000_000;
 /// Limit of multiplications of the search for contradictions.
@@ -50,11 +47,11 @@ pub fn contradiction(case: Case, gaps: &Gaps) -> Result<Option<Error>> {
     let none = Csr { ptr: vec![0; c.len() + 1], ..Csr::default() };
     let qp = Qp::plain(&a, &b, &none, &[], &bounded);
     let steps = (WORK / (4 * matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
-    let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
+    let limits = Limits { tolerance: rounding::SUM, gamma: 1.0, steps };
     let mut judge = Unjudged { scale: norm(&b) };
     let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut Unheard)?;
     interrupt::check()?;
-    if left(&a, &solution.x) > UNCERTAIN {
+    if left(&a, &solution.x) > MAY_CONTRADICT {
         return Ok(None);
     }
     let mut w = vec![0.0; gaps.value.len()];

@@ -4,11 +4,9 @@ use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::vector::norm_max;
 use crate::linalg::Matrix;
+use crate::numbers::solve::FREE_PART;
 use crate::qp::{AnswerFace, Direct, Face, Qp};
 use crate::setup::Ready;
-
-/// A part of a free motion is more than rounding if it exceeds this.
-const PART: f64 = 1e-6;
 
 /// The motions of an island with negative stiffness: modes, and square roots of the negative stiffness.
 pub struct NegativeMotions {
@@ -54,7 +52,7 @@ impl NegativeMotions {
     /// A motion with negative stiffness that the rows of a face do not resist.
     pub fn free(&self, qp: Qp, held: &[bool]) -> Result<Option<Vec<f64>>> {
         let free = AnswerFace::of(&qp, held)?.undetermined()?;
-        let is_negative = |v: &[f64]| self.modes.iter().any(|&mode| v[mode].abs() > PART * norm_max(v));
+        let is_negative = |v: &[f64]| self.modes.iter().any(|&mode| v[mode].abs() > FREE_PART * norm_max(v));
         Ok((0..free.cols).map(|j| free.col(j)).find(|v| is_negative(v)).map(<[f64]>::to_vec))
     }
 }

@@ -4,12 +4,15 @@
 use crate::certificate::Certificate;
 use crate::error::{Kind, Result};
 use crate::model::{FinishBy, Method, Settings};
+use crate::numbers::solve::{
+    FAR, INTERIOR_FACTORS, MUCH_BETTER, NO_WORSE, RATIO_ROUNDING, SET_FACTORS, UNEVEN_DEFORMATION,
+};
 use crate::platform::interrupt;
 use crate::qp::{Effort, Face, Rung, Verdict};
 use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::pivots::Pivots;
 use crate::solve::recovery::{Ending, Faces, Recovery};
-use crate::solve::slides::FAR;
+
 use crate::solve::sparse_face::SparseFaces;
 use crate::solve::split_point::{FaceSolver, SplitPoint};
 
@@ -17,14 +20,6 @@ use crate::solve::split_point::{FaceSolver, SplitPoint};
 const STEPS: usize = 16;
 /// Limit of corrections on one active set.
 const CORRECTIONS: usize = 10;
-/// Ratios of the certificate below this are rounding.
-const ROUNDING: f64 = 1e-4;
-/// A ratio below `MUCH_BETTER` times another is much better; below `NO_WORSE` times another it is no worse.
-const MUCH_BETTER: f64 = 0.5;
-const NO_WORSE: f64 = 1.1;
-
-/// Errors may be large on bodies beside others that are deformed more by this factor.
-const UNEVEN: f64 = 100.0;
 
 /// Whether option `finish` asks for the finish of an island's answer. `automatic`: if an error that passes the
 /// certificate may be large on some body, or if the way that bodies have travelled has `spoilt` the answer for the place where they
@@ -34,7 +29,7 @@ pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending, s
         return settings.finish == FinishBy::Direct;
     }
     let default = settings.method == Method::Proportioning && settings.finish == FinishBy::Automatic;
-    let overlooked = ending.judgement.unevenness > UNEVEN;
+    let overlooked = ending.judgement.unevenness > UNEVEN_DEFORMATION;
     settings.finish == FinishBy::Direct
         || default && (overlooked || spoilt || is_delicate(recovery, ending)) && Rung::Finish.is_tried()
 }
@@ -48,8 +43,8 @@ fn is_delicate(recovery: &Recovery, ending: &Ending) -> bool {
 /// Factorisations that this effort takes, if it has a limit: those of the active sets, or of some twenty steps into the interior.
 pub fn factorisations(effort: Effort) -> Option<f64> {
     match effort {
-        Effort::FewSets => Some(4.0),
-        Effort::Interior => Some(16.0),
+        Effort::FewSets => Some(SET_FACTORS),
+        Effort::Interior => Some(INTERIOR_FACTORS),
         Effort::AllSets | Effort::All => None,
     }
 }
@@ -157,7 +152,7 @@ impl<'a, 'b> Finish<'a, 'b> {
             let next = point.active(self.recovery);
             let misses =
                 self.keep(&point, undetermined, if next == active { is_no_worse } else { is_better })?;
-            self.done.settled = next == active || self.ending.judgement.certificate.worst() <= ROUNDING;
+            self.done.settled = next == active || self.ending.judgement.certificate.worst() <= RATIO_ROUNDING;
             if self.done.settled && next != active && !self.delicate {
                 break;
             }
@@ -209,7 +204,7 @@ impl<'a, 'b> Finish<'a, 'b> {
             self.ending.solution.counts.direct += 1;
             self.keep(&point, self.ending.solution.undetermined, is_better)?;
             let is_settled = states == before && !(size < 0.5 * last);
-            if is_settled || self.passes() && self.ending.judgement.certificate.worst() <= ROUNDING {
+            if is_settled || self.passes() && self.ending.judgement.certificate.worst() <= RATIO_ROUNDING {
                 break;
             }
             (last, before) = (size, states);
@@ -263,12 +258,12 @@ fn is_better(new: &Certificate, old: &Certificate) -> bool {
     new.passed()
         && (!old.passed()
             || much
-            || entries.all(|(new, old)| new.ratio <= (NO_WORSE * old.ratio).max(ROUNDING)))
+            || entries.all(|(new, old)| new.ratio <= (NO_WORSE * old.ratio).max(RATIO_ROUNDING)))
 }
 
 /// It passes, and in sum it is no worse: enough on the rows that signs confirm, which those of the other answer may not be.
 fn is_no_worse(new: &Certificate, old: &Certificate) -> bool {
-    new.passed() && new.worst() <= (NO_WORSE * old.worst()).max(ROUNDING)
+    new.passed() && new.worst() <= (NO_WORSE * old.worst()).max(RATIO_ROUNDING)
 }
 
 #[cfg(test)]

@@ -9,15 +9,10 @@ use crate::linalg::graph::joined;
 use crate::linalg::random::scattered;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::{Csr, Matrix, Operator};
+use crate::numbers::rounding;
+use crate::numbers::solve::SMALL_FORCE;
 use crate::qp::AnswerFace;
 use crate::setup::Ready;
-
-/// A force below this part of the forces on each body that its row touches, or on a body without load of all forces, may be
-/// rounding: it is, if the loads do no work along the motions that it holds.
-const SMALL: f64 = 1e-6;
-/// Below these parts it is rounding even if it holds no motion.
-const ROUNDING: f64 = 1e-12;
-const IDLE: f64 = 64.0 * f64::EPSILON;
 
 /// Rows of the dual that hold nothing: groups of contact rows whose forces are all rounding, their own or, beside uneven rows, that of
 /// resultants, and tangential rows of nodes whose friction bound is 0. `load`: loads of all unknowns, force; `coarse`: G'.
@@ -42,7 +37,7 @@ pub fn without_force(ready: &Ready, coarse: &Csr, load: &[f64], answer: Candidat
     };
     let mut held: Vec<bool> = (0..rows.groups()).map(|group| rows.kind(group) != RowKind::Equality).collect();
     let mut small = held.clone();
-    let (rounding, weak) = (of_bodies(ROUNDING, IDLE), of_bodies(SMALL, SMALL));
+    let (rounding, weak) = (of_bodies(rounding::METHOD, NOISE), of_bodies(SMALL_FORCE, SMALL_FORCE));
     for (i, (group, _)) in rows.scaling.grouping.members().filter(|(i, _)| *i < rows.contact) {
         let exceeds = |nothing: &[f64]| {
             let bodies = island.contact.rows.matrix.row(i).map(|(j, _)| nothing[island.body_of(j)]);

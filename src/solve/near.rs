@@ -3,12 +3,13 @@
 //! without them.
 
 use crate::error::{Error, Kind, Result};
+use crate::numbers::solve::FAR;
 use crate::qp::{Rung, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Judged;
 use crate::solve::diagnosis::Unheld;
 use crate::solve::fallback::gave_up;
-use crate::solve::presolve::FAR;
+
 use crate::solve::scaled::Scaled;
 
 /// The rows left out, and what the runs without them have found.

@@ -15,6 +15,7 @@
 
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::vector::{axpy, dot, NOISE};
+use crate::numbers::solve::SAME_ENERGY;
 use crate::qp::friction::unheld;
 use crate::qp::{Qp, Rung, Solution, Verdict};
 use crate::solve::case::Case;
@@ -33,8 +34,6 @@ const STRICT: usize = 2;
 const STRICT_ALONE: usize = 20;
 /// After this number of Newton rounds on one face, only rounding is left between the rounds.
 const MENDED: usize = 4;
-/// Two energies are equal if they differ by less than this part of their terms.
-const SAME: f64 = 1e-9;
 
 /// Where a round begins.
 pub struct Step {
@@ -113,7 +112,7 @@ impl Round<'_> {
 
     /// The energy of this round is above that of `other`.
     fn is_above(&self, other: &Round) -> bool {
-        self.energy > other.energy + SAME * (self.terms + other.terms)
+        self.energy > other.energy + SAME_ENERGY * (self.terms + other.terms)
     }
 }
 

@@ -4,19 +4,12 @@ use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::vector::NOISE;
 use crate::linalg::Operator;
+use crate::numbers::solve::{EQUAL_GAPS, FAR, FAR_WITH_FRICTION};
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::contradiction::contradiction;
 use crate::solve::diagnosis::Contradictions;
 use crate::solve::gaps::Gaps;
-
-/// Gaps of two rows are equal if they differ by less than this fraction of them, or by rounding of the distance by which
-/// loads and rows move the bodies.
-const EQUAL: f64 = 1e-10;
-/// A gap is far if it exceeds all motion caused by loads and demanded by rows by this factor.
-pub const FAR: f64 = 1e4;
-/// The factor with friction, where gaps of open rows enter the scale of the laws.
-const FAR_WITH_FRICTION: f64 = 1e2;
 
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved`: the largest motion of a row by the
 /// loads.
@@ -41,7 +34,7 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
         _ => c.abs(),
     };
     let reach = scaled.iter().enumerate().map(demand).fold(moved, f64::max);
-    let slack = |a: f64, b: f64| EQUAL * a.abs().max(b.abs()) + NOISE * reach;
+    let slack = |a: f64, b: f64| EQUAL_GAPS * a.abs().max(b.abs()) + NOISE * reach;
     for (i, member) in rows.scaling.grouping.member[..rows.tangential].iter().enumerate() {
         let Some((group, sign)) = *member else { continue };
         let gap = sign * gaps.value[group];

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::model::Model;
+use crate::numbers::linalg::WEAK;
 use crate::platform::interrupt;
 use crate::platform::memory::{copied, zeros};
 use crate::qp::{Direct, Qp, Solution};
@@ -69,7 +70,7 @@ pub struct Recovery<'a> {
     pub data: Data<'a>,
     pub threads: usize,
     pub faces: Faces<'a>,
-    /// K+ of some body amplifies rounding by more than 1 / `SOFT`.
+    /// K+ of some body amplifies rounding by more than 1 / `WEAK`.
     pub soft: bool,
     /// Some node has friction: slips distinguish one answer from another.
     pub friction: bool,
@@ -77,9 +78,6 @@ pub struct Recovery<'a> {
 
 /// Name of the certificate in the log.
 const CERTIFICATE: &str = "certificate";
-
-/// K+ loses too much precision if its `softness` is below this.
-const SOFT: f64 = 1e-4;
 
 impl<'a> Recovery<'a> {
     pub fn new(case: Case<'a>, scaled: &'a Scaled, faces: Faces<'a>) -> Result<Self> {
@@ -89,7 +87,7 @@ impl<'a> Recovery<'a> {
         }
         let is_soft = |p: &usize| {
             let inverse = case.prepared.inverse(case.model, *p);
-            inverse.is_some_and(|inverse| inverse.kplus.softness < SOFT)
+            inverse.is_some_and(|inverse| inverse.kplus.softness < WEAK)
         };
         let soft = ready.island.bodies.iter().any(is_soft);
         Ok(Self {

@@ -10,15 +10,12 @@ use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::{norm, ratio, weighted_norm};
 use crate::linalg::Csr;
+use crate::numbers::linalg::WEAK;
+use crate::numbers::solve::FAR;
 use crate::platform::memory::{copied, zeros};
 use crate::qp::AnswerFace;
 use crate::setup::Ready;
 use crate::solve::recovery::{Ending, Recovery};
-
-/// A body slides if it moves farther than it deforms by this factor ...
-pub const FAR: f64 = 1e4;
-/// ... and each row with a force resists this motion by less than this part of its own terms.
-const WEAK: f64 = 1e-4;
 
 const WHAT: &str = "the slides of an answer";
 

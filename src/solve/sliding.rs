@@ -5,17 +5,13 @@ use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, norm_max, weighted_norm, NOISE};
 use crate::linalg::Csr;
+use crate::numbers::solve::{CLOSED_MOVES, STILL};
 use crate::platform::memory::{filled, zeros};
 use crate::solve::diagnosis::resistance;
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::Recovery;
 
 const WHAT: &str = "a motion along closed rows";
-/// A row moves only if its motion exceeds this part of the most that the fastest unknown could cause.
-const STILL: f64 = 1e-9;
-/// This limit for a closed row, whose state may be known only to the tolerance of a method: its contribution to the
-/// energy counts.
-const CLOSED: f64 = 1e-5;
 
 /// `v = R alpha - K+ B'x`, x on the rows F alone.
 pub struct Sliding {
@@ -61,7 +57,7 @@ impl Sliding {
         }
         let size = weighted_norm(&self.v, |j| recovery.ready.rows.metric[j]);
         let falls = self.energy(recovery)?.0.value() < -NOISE * entries;
-        Ok(falls && resistance(recovery.ready, &self.v) <= CLOSED * size)
+        Ok(falls && resistance(recovery.ready, &self.v) <= CLOSED_MOVES * size)
     }
 
     /// `v'K v` and the size of its terms, in units of 2^p.
@@ -88,7 +84,7 @@ impl Sliding {
         for i in (0..rows.groups()).filter(|&i| !held[i]) {
             let (given, compliance) = (rows.matrix.row_dot(i, &self.v), recovery.ready.dual.compliance[i]);
             let left = (given - compliance * self.x[i]).abs();
-            if left > CLOSED * self.size(&rows.matrix, i) {
+            if left > CLOSED_MOVES * self.size(&rows.matrix, i) {
                 return Ok(false);
             }
             energy.add_product(self.x[i], compliance * self.x[i]);

@@ -16,6 +16,7 @@ use crate::linalg::cholesky::{Analysis, Cholesky};
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, weighted_norm, NOISE};
 use crate::linalg::{Csr, Symmetric};
+use crate::numbers::solve::{LEAST_COMPLIANCE, STIFFER};
 use crate::platform::memory::{copied, zeros};
 use crate::platform::{interrupt, tally};
 use crate::qp::{Interior, Inverse, Point, Stiffness};
@@ -23,10 +24,6 @@ use crate::setup::Ready;
 use crate::solve::gaps::Gaps;
 use crate::solve::scaled::Scaled;
 
-/// 1/c is this multiple of the stiffest unknown of the row: much more loses digits of K, much less takes many corrections.
-const STIFFER: f64 = 1e3;
-/// Part of c at which rows of the interior point method yield: forces of rows that nearly depend on others settle slowly.
-const CLOSED: f64 = 1e-6;
 /// Rows with more entries would fill the factor.
 const WIDE: usize = 100;
 
@@ -147,8 +144,12 @@ impl<'a> SparseFaces<'a> {
         let motion = factor.solve(&load)?;
         let mut stiffness = self;
         let mean = stiffness.size(e).powi(2) / m as f64;
-        let least: Vec<f64> =
-            self.compliance.iter().zip(&self.least).map(|(c, least)| c.max(CLOSED * least)).collect();
+        let least: Vec<f64> = self
+            .compliance
+            .iter()
+            .zip(&self.least)
+            .map(|(c, least)| c.max(LEAST_COMPLIANCE * least))
+            .collect();
         let interior = Interior {
             rows: self.rows,
             e,

@@ -4,12 +4,13 @@ use crate::certificate::NOISE;
 use crate::error::Result;
 use crate::linalg::twofold::TwofoldVector;
 use crate::linalg::vector::{axpy, weighted_norm};
+use crate::numbers::solve::FAR;
 use crate::qp::friction::{Corrected, State};
 use crate::qp::{Face, Point};
 use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovery};
-use crate::solve::slides::FAR;
+
 use crate::solve::sparse_face::SparseFace;
 
 /// The factors of a face: dense ones of F and the modes, or sparse ones of the island.

@@ -15,10 +15,9 @@ use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::{axpy, dot, norm_max, NOISE};
 use crate::linalg::{Csr, Matrix};
+use crate::numbers::linalg::DEPENDENT;
 use crate::qp::{nearest_point, Polyhedron};
 
-/// A motion depends on others if less than this part of its length is left beside them.
-const DEPENDENT: f64 = 1e-10;
 /// The second pass removes the rounding of a long first travel.
 const PASSES: usize = 2;
 

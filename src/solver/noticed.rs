@@ -1,9 +1,11 @@
 //! Log lines about properties of the data that the host may not have intended.
 
-use crate::constraints::{FrictionNode, RowKind, RowSet, SHORT};
+use crate::constraints::{FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::Csr;
 use crate::model::{Model, Parts};
+use crate::numbers::data::HIGH_FRICTION;
+use crate::numbers::rounding;
 use crate::progress::{Log, LogLevel};
 
 /// Notes: no load, contact rows that overlap before anything moves, contact rows that never close.
@@ -47,7 +49,7 @@ fn friction(log: &Log, model: &Model) -> Result<()> {
     let number = |node: usize| node as i64 + base;
     let nodes = || model.friction.nodes.iter().enumerate();
     // steel on rubber has 1 to 2
-    if let Some((k, node)) = nodes().find(|(_, node)| node.coefficient > 5.0) {
+    if let Some((k, node)) = nodes().find(|(_, node)| node.coefficient > HIGH_FRICTION) {
         let coefficient = node.coefficient;
         log.say(LogLevel::Phase, || {
             format!(
@@ -137,7 +139,7 @@ fn unusual(log: &Log, model: &Model) -> Result<()> {
         let others =
             |i: usize| rows.matrix.row(i).map(|(j, _)| largest[body_of(j)]).fold(f64::INFINITY, f64::min);
         let short: Vec<usize> = (0..rows.len())
-            .filter(|&i| !rows.is_empty_row(i) && rows.largest_entry(i) < SHORT * others(i))
+            .filter(|&i| !rows.is_empty_row(i) && rows.largest_entry(i) < rounding::METHOD * others(i))
             .collect();
         for (some, what) in [
             (rows.cancelled(), "the entries cancel up to rounding, or are rounding of the rows of their node: the row constrains nothing"),

@@ -1,11 +1,9 @@
 //! What the lengths of the rows of a node tell of the factors by which the host has multiplied them.
 
-use crate::constraints::{RowSet, SHORT};
+use crate::constraints::RowSet;
 use crate::error::{Error, Result};
-
-/// Limit of the ratio of row lengths at one node: beyond it the host has multiplied them by different factors, or supports have
-/// taken entries from them.
-pub const FACTORS: f64 = 1e3;
+use crate::numbers::rounding;
+use crate::numbers::rows::FACTORS;
 
 pub type Entries = Vec<(usize, f64)>;
 
@@ -24,7 +22,7 @@ fn length(row: &Entries) -> f64 {
 /// The ratio of the lengths of rows; those so short that they are rounding are dropped.
 pub fn ratio(rows: &mut Vec<Entries>) -> f64 {
     let most = rows.iter().map(length).fold(0.0, f64::max);
-    rows.retain(|row| length(row) > SHORT * most);
+    rows.retain(|row| length(row) > rounding::METHOD * most);
     most / rows.iter().map(length).fold(most, f64::min)
 }
 

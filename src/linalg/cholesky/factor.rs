@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::Analysis;
-use crate::linalg::cholesky::numeric::front::HELD;
+use crate::numbers::linalg::HELD_PIVOT;
+
 use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
 use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::{Csr, Symmetric};
@@ -176,7 +177,7 @@ impl Cholesky {
 
     /// The unknowns whose pivots are held, ascending: they are 0 in every solution, as if they did not exist.
     pub fn at_rest(&self) -> Vec<usize> {
-        let held = self.pivots().filter(|(_, pivot)| *pivot >= 0.5 * HELD);
+        let held = self.pivots().filter(|(_, pivot)| *pivot >= 0.5 * HELD_PIVOT);
         let mut held: Vec<usize> = held.map(|(dof, _)| dof).collect();
         held.sort_unstable();
         held

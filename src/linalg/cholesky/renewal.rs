@@ -7,11 +7,7 @@ use crate::error::Result;
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::numeric::multifrontal::{self, Kept};
 use crate::linalg::{Analysis, Cholesky, Symmetric};
-
-/// Multiplications of a factorisation in the time of one entry of L in a solve, which reads L twice from memory.
-const READ: f64 = 20.0;
-/// Number of solves between two factorisations.
-const SOLUTIONS: f64 = 8.0;
+use crate::numbers::linalg::{READ_OF_L, SOLUTIONS};
 
 pub struct Renewal {
     pub analysis: Arc<Analysis>,
@@ -55,7 +51,7 @@ impl Renewal {
     fn cost(&self) -> f64 {
         let nodes = &self.analysis.nodes;
         let work: f64 = self.renewed.iter().map(|&s| nodes.node(s).work()).sum();
-        work + READ * SOLUTIONS * nodes.values() as f64
+        work + READ_OF_L * SOLUTIONS * nodes.values() as f64
     }
 
     /// Whether renewing a factor reads entries in the row or column of an unknown.

@@ -10,12 +10,9 @@ use faer::{MatMut, MatRef, Par, Spec};
 
 use crate::error::Result;
 use crate::linalg::Matrix;
+use crate::numbers::linalg::SINGULAR;
+use crate::numbers::rounding;
 use crate::platform::memory::{headroom, refusal, reserved, zeros, PRODUCTS};
-
-/// A pivot of the matrix scaled to unit diagonal counts as 0 below this, since the entries may be inaccurate ...
-const SINGULAR: f64 = 1e-11;
-/// ... and is certainly rounding below this.
-const ROUNDING: f64 = 1e-14;
 
 pub struct PivotedCholesky {
     /// Row at each position.
@@ -61,7 +58,7 @@ impl PivotedCholesky {
         );
         let Ok(found) = done.map(|(info, _)| info.rank) else { return Ok(None) };
         let above = |limit: f64| (0..found).find(|&j| a.get(j, j) * a.get(j, j) <= limit).unwrap_or(found);
-        let (rank, full_rank) = (above(SINGULAR), above(ROUNDING));
+        let (rank, full_rank) = (above(SINGULAR), above(rounding::SUM));
         Ok(Some(Self { order, factor: a, inverse_root, rank, full_rank }))
     }
 

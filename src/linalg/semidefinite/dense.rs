@@ -4,7 +4,8 @@ use faer::linalg::solvers::{Llt, SelfAdjointEigen, Solve};
 use faer::{Mat, MatMut, Side};
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::semidefinite::SINGULAR;
+use crate::numbers::linalg::SINGULAR;
+
 use crate::linalg::Matrix;
 use crate::platform::memory::{headroom, PRODUCTS};
 

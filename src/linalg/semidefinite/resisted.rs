@@ -6,9 +6,8 @@ use crate::error::Result;
 use crate::linalg::dense::spectrum::{right_singular, symmetric_eigen};
 use crate::linalg::vector::norm;
 use crate::linalg::{Csr, Matrix};
+use crate::numbers::linalg::ROOT;
 
-/// Eigenvalues of W below this, with its largest diagonal entry in [1, 2), are not accurate enough.
-const UNCERTAIN: f64 = 1e-8;
 /// Each makes `|G_F n|` of a motion n accurate to rounding, even if the eigenvectors contain parts of well resisted
 /// motions.
 const REFINEMENTS: usize = 2;
@@ -28,7 +27,7 @@ pub struct Parts {
 /// free if `|G_F a| <= limit |a|`: it is in the kernel.
 pub fn parts(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<Parts> {
     let (values, vectors) = symmetric_eigen(w)?;
-    let certain = values.partition_point(|value| *value <= UNCERTAIN);
+    let certain = values.partition_point(|value| *value <= ROOT);
     let (mut motions, mut kept) = (vectors.columns(0..certain), vectors.columns(certain..w.cols));
     for (j, value) in values[certain..].iter().enumerate() {
         kept.col_mut(j).iter_mut().for_each(|v| *v /= value.sqrt());

@@ -3,6 +3,8 @@
 use super::graph::Graph;
 use super::incidence::{NONE, WHAT};
 use crate::error::Result;
+use crate::numbers::cut::SHRINKS;
+use crate::numbers::linalg::HEAVIEST;
 use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
 
@@ -14,12 +16,12 @@ pub struct Level {
 
 /// Coarsens a graph until at most `enough` vertices are left, or no further merging is possible.
 pub fn coarsen(graph: Graph, enough: usize) -> Result<Vec<Level>> {
-    let most = 1.5 * graph.weight.iter().sum::<f64>() / enough as f64;
+    let most = HEAVIEST * graph.weight.iter().sum::<f64>() / enough as f64;
     let mut levels = vec![Level { graph, coarse: Vec::new() }];
     while let Some(level) = levels.last_mut().filter(|level| level.graph.count() > enough) {
         interrupt::check()?;
         let (coarse, count) = matched(&level.graph, most)?;
-        if count as f64 > 0.95 * level.graph.count() as f64 {
+        if count as f64 > SHRINKS * level.graph.count() as f64 {
             break;
         }
         let graph = contracted(&level.graph, &coarse, count)?;

@@ -5,6 +5,7 @@ use super::incidence::{mixed, WHAT};
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::Matrix;
+use crate::numbers::cut::{FLAT, SLOPE, TIE};
 use crate::platform::memory::reserved;
 
 /// Number of elements in the sample for the choice of a direction, evenly from the set.
@@ -44,7 +45,7 @@ impl Set<'_> {
         for frame in [AXES, *of_mesh, self.of_inertia(&sample)?] {
             let cuts = frame.map(|axis| self.crossing(&sample, &axis, &mut keys));
             let least = (0..3).min_by(|&i, &j| cuts[i].0.total_cmp(&cuts[j].0)).unwrap_or(0);
-            if cuts[least].0 < best.as_ref().map_or(f64::INFINITY, |best| 0.99 * best.2[best.0].0) {
+            if cuts[least].0 < best.as_ref().map_or(f64::INFINITY, |best| (1.0 - TIE) * best.2[best.0].0) {
                 best = Some((least, frame, cuts));
             }
         }
@@ -153,11 +154,10 @@ fn smallest_axis(a: &Point) -> Point {
 /// The first direction with a small tilt, so that a plane cuts a layer between its rows and a row between two elements.
 /// `step` is the distance of two layers.
 fn tilted(frame: Frame, mut step: f64, extents: Point, lengths: Point) -> Point {
-    const SLOPE: f64 = 0.05;
     let mut direction = frame[0];
     for i in 1..3 {
         // a flat body has no third direction
-        if extents[i] > 1e-9 * extents[0] {
+        if extents[i] > FLAT * extents[0] {
             (0..3).for_each(|k| direction[k] += SLOPE * step / extents[i] * frame[i][k]);
             step *= SLOPE / lengths[i];
         }

@@ -7,6 +7,7 @@ use super::coarse::{coarsen, projected};
 use super::graph::Graph;
 use super::incidence::WHAT;
 use crate::error::Result;
+use crate::numbers::cut::{SLACK, SLACK_BY_ELEMENT};
 use crate::platform::interrupt;
 use crate::platform::memory::filled;
 
@@ -14,8 +15,6 @@ use crate::platform::memory::filled;
 const SMALL: usize = 100;
 /// Number of start vertices tried.
 const TRIALS: usize = 12;
-/// Permitted deviation of the weight of a side, as a part of the smaller side.
-const SLACK: f64 = 0.01;
 /// A round ends after this number of moves without a better cut.
 const PATIENCE: usize = 100;
 const ROUNDS: usize = 4;
@@ -92,7 +91,7 @@ impl<'a> Refinement<'a> {
         let total: f64 = graph.weight.iter().sum();
         let weight = (0..graph.count()).filter(|&i| !side[i]).map(|i| graph.weight[i]).sum();
         let largest = graph.weight.iter().copied().fold(0.0, f64::max);
-        let slack = (SLACK * total * fraction.min(1.0 - fraction)).max(0.6 * largest);
+        let slack = (SLACK * total * fraction.min(1.0 - fraction)).max(SLACK_BY_ELEMENT * largest);
         let (gain, moved) = (filled(graph.count(), 0, WHAT)?, filled(graph.count(), false, WHAT)?);
         Ok(Self { graph, side, gain, moved, weight, goal: fraction * total, slack })
     }

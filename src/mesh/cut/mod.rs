@@ -18,6 +18,7 @@ mod smooth;
 mod tests;
 
 use crate::error::{Error, Kind, Result};
+use crate::numbers::cut::PIECE;
 use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
 use graph::{shares, Graph};
@@ -33,8 +34,6 @@ pub struct Elements<'a> {
 
 /// Smaller bodies are solved faster without a cut.
 const WHOLE: usize = 40_000;
-/// Mean number of unknowns of a piece.
-const PIECE: f64 = 1200.0;
 
 /// The number of pieces for a body with this number of unknowns. A cube is cut equally often along each edge.
 pub fn pieces_for(unknowns: usize) -> usize {

@@ -3,13 +3,10 @@
 use super::graph::Graph;
 use super::incidence::{Incidence, NONE, WHAT};
 use crate::error::Result;
+use crate::numbers::cut::{FULL, OVERFULL};
 use crate::platform::interrupt;
 use crate::platform::memory::filled;
 
-/// No element moves to a piece that would then exceed this multiple of the mean number of unknowns.
-const FULL: f64 = 1.06;
-/// A piece above this multiple of the mean gives elements away even if that increases the shared unknowns.
-const OVERFULL: f64 = 1.07;
 const ROUNDS: usize = 8;
 
 struct Refinement<'a> {

@@ -8,13 +8,9 @@ use super::incidence::{NONE, WHAT};
 use super::scraps::give;
 use super::smooth::smooth;
 use crate::error::Result;
+use crate::numbers::cut::{DISCONNECTED, LONG, SNAP, TIE};
 use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
-
-/// A plane may shift by this part of a slab to pass between two layers.
-const SNAP: f64 = 0.015;
-/// This part of the weight of a slab may be disconnected; neighbours take it over later.
-const APART: f64 = 0.02;
 
 /// Number of groups of elements per piece if the graph alone is cut.
 const GROUPS: usize = 150;
@@ -170,7 +166,7 @@ impl Sections<'_> {
                 left = total - largest;
             }
             members.iter().for_each(|&i| self.place[i as usize] = NONE);
-            connected &= left <= APART * total / set.pieces as f64;
+            connected &= left <= DISCONNECTED * total / set.pieces as f64;
         }
         connected
     }
@@ -206,7 +202,7 @@ fn counts(pieces: usize, lengths: &Point) -> Vec<usize> {
         let dimension = longer().count().max(1);
         length = (longer().product::<f64>() / pieces as f64).powf(1.0 / dimension as f64);
     }
-    let fits = |&slabs: &usize| pieces % slabs == 0 && (slabs as f64) < 1.2 * lengths[0] / length;
+    let fits = |&slabs: &usize| pieces % slabs == 0 && (slabs as f64) < LONG * lengths[0] / length;
     let slabs = [2, 3, 5, 7].into_iter().find(fits);
     slabs.map_or_else(|| vec![pieces / 2, pieces - pieces / 2], |slabs| vec![pieces / slabs; slabs])
 }
@@ -230,7 +226,8 @@ fn between_layers(
         let off = (w - goal).abs();
         let gap = if i > 0 { keys[i].0 - keys[i - 1].0 } else { 0.0 };
         let (inside, was_inside) = (off <= slack, nearest <= slack);
-        if inside && (!was_inside || gap > 1.01 * widest || gap > 0.99 * widest && off < nearest)
+        if inside
+            && (!was_inside || gap > (1.0 + TIE) * widest || gap > (1.0 - TIE) * widest && off < nearest)
             || !inside && !was_inside && off < nearest
         {
             (best, widest, nearest) = (i, gap, off);

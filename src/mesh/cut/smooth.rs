@@ -3,17 +3,16 @@
 use super::graph::Graph;
 use super::incidence::WHAT;
 use crate::error::Result;
+use crate::numbers::cut::FULL_BY_WEIGHT;
 use crate::platform::interrupt;
 use crate::platform::memory::filled;
 
-/// No vertex moves to a piece that would then exceed this multiple of the mean weight.
-const FULL: f64 = 1.05;
 const ROUNDS: usize = 6;
 
 pub fn smooth(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
     let mut weight = filled(count, 0.0, WHAT)?;
     (0..graph.count()).for_each(|i| weight[piece[i] as usize] += graph.weight[i]);
-    let most = FULL * weight.iter().sum::<f64>() / count as f64;
+    let most = FULL_BY_WEIGHT * weight.iter().sum::<f64>() / count as f64;
     let mut near: Vec<(u32, i64)> = Vec::new();
     for _ in 0..ROUNDS {
         interrupt::check()?;

@@ -2,11 +2,13 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm, NOISE};
+use crate::numbers::friction::RHO;
+use crate::numbers::rounding;
 use crate::qp::friction::cones::Node;
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
-use crate::qp::friction::newton::{Point, Run, RHO};
-use crate::qp::friction::path::{Solves, Way, LAST};
+use crate::qp::friction::newton::{Point, Run};
+use crate::qp::friction::path::{Solves, Way};
 use crate::qp::Rung;
 
 /// More combinations are not tried: five nodes in the plane have as many.
@@ -53,7 +55,7 @@ impl Run<'_, '_> {
             if !rung.is_tried() {
                 continue;
             }
-            let way = Way { relaxed, last: LAST, solves: Solves::Dense(dense) };
+            let way = Way { relaxed, last: rounding::SUM, solves: Solves::Dense(dense) };
             let now = self.along_path(start, way)?;
             if self.is_met(&now) {
                 return Ok(Some(now));

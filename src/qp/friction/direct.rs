@@ -5,16 +5,15 @@ use crate::error::Result;
 use crate::linalg::dense::least_squares::least_squares;
 use crate::linalg::vector::axpy;
 use crate::linalg::Matrix;
+use crate::numbers::friction::RHO;
+use crate::numbers::rounding;
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::coordinates::Law;
 use crate::qp::friction::face::{Face, State};
-use crate::qp::friction::newton::{Point, RHO};
+use crate::qp::friction::newton::Point;
 use crate::qp::friction::pairs::Step;
 use crate::qp::friction::{Cones, FrictionProblem};
 use crate::qp::Direct;
-
-/// A pivot of the matrix with columns of unit length is rounding if it is below this.
-const CUT: f64 = 1e-13;
 
 /// F, m x m.
 pub struct Dense {
@@ -92,7 +91,7 @@ impl Dense {
         stiffness.iter().for_each(|&(mode, own)| matrix.set(m + mode, m + mode, own));
         residual.iter().enumerate().for_each(|(k, v)| target[k] = -weight(k) * v);
         target[m..].copy_from_slice(left);
-        let mut dx = least_squares(&matrix, &target, CUT)?;
+        let mut dx = least_squares(&matrix, &target, rounding::SOLVE)?;
         let turn = dx.split_off(m);
         Ok((dx, turn))
     }

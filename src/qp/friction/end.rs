@@ -2,20 +2,17 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{norm, ratio};
+use crate::numbers::friction::{FINE, NEAR, RHO};
+use crate::numbers::qp::TIGHTER;
 use crate::qp::friction::cones::Cones;
 use crate::qp::friction::face::Face;
 use crate::qp::friction::nearest::Projected;
-use crate::qp::friction::newton::{Point, Run, RHO};
+use crate::qp::friction::newton::{Point, Run};
 use crate::qp::friction::{FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart};
 use crate::qp::{AcceptanceTest, Counts, Effort, Mended, Observer, Rung, Solution, Verdict};
 
-/// Below this merit the answer may be as accurate as rounding allows.
-const NEAR: f64 = 1e-7;
-/// Factor on the tolerance of the laws each time the answer is not accepted, ...
-const TIGHTER: f64 = 0.1;
 /// ... at most this many times, in addition to the steps from a looser tolerance to the present one.
 const REFUSALS: usize = 3;
-const FINE: f64 = 1e-12;
 
 /// An answer for the laws of friction, or the reason why there is none.
 pub fn friction(

@@ -3,12 +3,11 @@
 
 use crate::error::Result;
 use crate::linalg::dense::growing::Growing;
+use crate::numbers::friction::FREE_MOTIONS;
+use crate::numbers::rounding;
 use crate::qp::friction::cones::{direction, length, Cones, Node};
 use crate::qp::friction::coordinates::{Coordinate, Law, EQUATION};
-use crate::qp::friction::motions::{Motions, Turned, CUT};
-
-/// A bound is zero if it is below this part of the largest force.
-const NOTHING: f64 = 1e-14;
+use crate::qp::friction::motions::{Motions, Turned};
 
 /// The state of a node with friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +31,7 @@ impl Face {
     /// The face of `xi = x - rho r`.
     pub fn at(cones: &Cones, x: &[f64], r: &[f64], rho: f64) -> Self {
         let xi: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
-        let nothing = NOTHING * crate::linalg::vector::norm_max(x);
+        let nothing = rounding::SUM * crate::linalg::vector::norm_max(x);
         let mut face = Self::empty(cones, rho);
         for node in cones.nodes() {
             let trial = node.of(&xi);
@@ -154,8 +153,8 @@ pub struct Model {
 impl Model {
     pub fn new(face: Face, motions: &mut Motions) -> Result<Self> {
         let weights = face.weights();
-        let plain = motions.inverse(&face.coordinates, weights.clone(), (false, CUT))?;
-        let through = motions.inverse(&face.coordinates, weights, (true, CUT))?;
+        let plain = motions.inverse(&face.coordinates, weights.clone(), (false, FREE_MOTIONS))?;
+        let through = motions.inverse(&face.coordinates, weights, (true, FREE_MOTIONS))?;
         Ok(Self { face, plain, through, images: Default::default() })
     }
 

@@ -10,10 +10,6 @@ use crate::qp::friction::coordinates::{self, Coordinate};
 use crate::qp::space::{CoarseInverse, Space};
 use crate::qp::Qp;
 
-/// Motions that weighted rows resist by less than this part of |G| are free: for `A w^2 A'` the limit is its square,
-/// 1e-11.
-pub const CUT: f64 = 3e-6;
-
 /// Data common to all faces of one G.
 pub struct Motions<'a> {
     g_transposed: &'a Csr,

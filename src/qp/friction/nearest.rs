@@ -6,6 +6,12 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
+use crate::numbers::friction::{
+    ARMIJO, ENDLESS, FIRST_SHIFT, PROJECTION_ACCEPTED, SHIFTS, SHIFT_LESS, SHIFT_MORE, SHIFT_SHORT,
+    SHORTEST_PROJECTION_STEP,
+};
+use crate::numbers::qp::PROJECTED;
+use crate::numbers::rounding;
 use crate::platform::interrupt;
 use crate::qp::friction::cones::{Cones, Place};
 use crate::qp::friction::coordinates::{Coordinate, Law};
@@ -13,24 +19,7 @@ use crate::qp::friction::face::Face;
 use crate::qp::friction::motions::Motions;
 use crate::qp::Qp;
 
-/// Limit of the residual relative to `|e| + |G||y|`, and the limit that is accepted if the method ends earlier.
-const ACCURACY: f64 = 1e-12;
-const ACCEPTED: f64 = 1e-8;
 const STEPS: usize = 100;
-/// Shift relative to the largest diagonal entry of `G G'`, since without delta the part of the matrix left by the cones may be
-/// singular: the first value, reduced after every full step and increased after short ones.
-const SHIFT: f64 = 1e-6;
-const LESS: f64 = 0.1;
-const MORE: f64 = 10.0;
-const SHORT: f64 = 0.1;
-const SHIFTS: (f64, f64) = (1e-14, 1e-2);
-/// The shift of the last steps, which remove the rounding in `e - G l` that weakly resisted motions would amplify.
-const ROUNDING: f64 = 1e-13;
-/// Armijo's factor on the slope, and the shortest step.
-const SLOPE: f64 = 1e-4;
-const SHORTEST: f64 = 1e-10;
-/// Bound of the multipliers relative to the data: beyond it phi decreases without end.
-const ENDLESS: f64 = 1e14;
 
 /// What is projected. Without delta the multiplier has no bound if no point satisfies `G x = e`.
 pub struct Target<'a> {
@@ -59,7 +48,7 @@ impl Target<'_> {
         let mut terms = vec![0.0; self.qp.e.len()];
         self.qp.g_transposed.mul_transposed_abs_add(self.y, &mut terms);
         let scale = norm(self.qp.e) + norm(&terms);
-        let (mut now, mut shift) = (self.at(beta), SHIFT);
+        let (mut now, mut shift) = (self.at(beta), FIRST_SHIFT);
         let mut closest = now.clone();
         for step in 0..STEPS {
             interrupt::reached("Newton steps of a projection on cones", step)?;
@@ -68,14 +57,14 @@ impl Target<'_> {
             if error == 0.0 || endless || !now.phi.is_finite() {
                 break;
             }
-            let is_last = error <= (ACCURACY * scale).max(self.rounding(&now));
-            let Some(direction) = self.direction(&now, if is_last { ROUNDING } else { shift })? else {
+            let is_last = error <= (PROJECTED * scale).max(self.rounding(&now));
+            let Some(direction) = self.direction(&now, if is_last { rounding::SOLVE } else { shift })? else {
                 break;
             };
             let Some((next, t)) = self.step(&now, &direction, is_last) else { break };
             let by = match t {
-                1.0 => LESS,
-                t if t < SHORT => MORE,
+                1.0 => SHIFT_LESS,
+                t if t < SHIFT_SHORT => SHIFT_MORE,
                 _ => 1.0,
             };
             shift = (by * shift).clamp(SHIFTS.0, SHIFTS.1);
@@ -84,7 +73,7 @@ impl Target<'_> {
                 closest.clone_from(&now);
             }
         }
-        let met = scale.is_finite() && norm(&now.left) <= ACCEPTED * scale;
+        let met = scale.is_finite() && norm(&now.left) <= PROJECTION_ACCEPTED * scale;
         Ok(Projected { met, ..if met { now } else { closest } })
     }
 
@@ -123,11 +112,11 @@ impl Target<'_> {
     /// The first of the steps 1, 1/2, ... that reduces phi sufficiently; of the last steps only 1, and only if it halves the residual.
     fn step(&self, now: &Projected, direction: &[f64], is_last: bool) -> Option<(Projected, f64)> {
         let (slope, mut t) = (-dot(&now.left, direction), 1.0);
-        while t > SHORTEST {
+        while t > SHORTEST_PROJECTION_STEP {
             let mut beta = now.beta.clone();
             axpy(t, direction, &mut beta);
             let next = self.at(beta);
-            let falls = next.phi <= now.phi + SLOPE * t * slope + 4.0 * f64::EPSILON * now.phi.abs();
+            let falls = next.phi <= now.phi + ARMIJO * t * slope + 4.0 * f64::EPSILON * now.phi.abs();
             match is_last {
                 true => return (norm(&next.left) < 0.5 * norm(&now.left)).then_some((next, t)),
                 false if falls && norm(&next.left).is_finite() => return Some((next, t)),

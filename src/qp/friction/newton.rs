@@ -3,6 +3,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::dot;
+use crate::numbers::friction::{CYCLING, INNER_TRIALS, MODEL_SOLVED, NEWTON_FALLS, RHO, TRIALS};
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::{Face, Model};
 use crate::qp::friction::motions::{Motions, Turned};
@@ -10,22 +11,9 @@ use crate::qp::friction::pairs::{Pair, Pairs, Step};
 use crate::qp::friction::{FrictionProblem, OnFace, Slide};
 use crate::qp::{Counts, Observer, Rung, StepKind, StepReport};
 
-/// rho, by which forces and lengths are compared, no unit: rows have the compliance `b K_d^-1 b' + C = 1`.
-pub const RHO: f64 = 0.2;
 /// Limit of directions on one face.
 const DIRECTIONS: usize = 10;
-/// The model is solved if less than this part of the linear residual is left: then a step is taken even if the merit
-/// rises.
-const SOLVED: f64 = 1e-2;
-/// Lengths of the trial steps, and of trial steps without a product.
-const TRIALS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
-const INNER_TRIALS: [f64; 2] = [1.0, 0.3];
 const INNER_STEPS: usize = 3;
-/// A step of length t must reduce the merit by at least this part of t.
-const FALLS: f64 = 0.01;
-/// The merit must fall to this part of its best value within a limited number of further steps and products; otherwise
-/// the method is cycling.
-const ENOUGH: f64 = 0.8;
 const STEPS: usize = 4;
 const PRODUCTS: usize = 8;
 
@@ -75,7 +63,7 @@ impl Run<'_, '_> {
                 }
             }
             self.reached(&now);
-            if now.merit < ENOUGH * best.0 {
+            if now.merit < CYCLING * best.0 {
                 best = (now.merit, self.counts.newton, self.counts.products);
             }
             let most = self.limit.min(best.2 + PRODUCTS);
@@ -104,7 +92,7 @@ impl Run<'_, '_> {
             let step = self.pairs.minimise(model, (&now.x, &now.r))?;
             let (best, falls) = self.best_trial(model, now, &step, &TRIALS)?;
             let is_last = !is_new || count == DIRECTIONS || self.counts.products >= self.limit;
-            if falls || step.rest < SOLVED || is_last {
+            if falls || step.rest < MODEL_SOLVED || is_last {
                 return Ok(Some((best, falls)));
             }
             there = step.from(&now.x, &now.r, 1.0);
@@ -126,7 +114,7 @@ impl Run<'_, '_> {
             let (x, g) = step.from(&now.x, &now.g, t);
             let alpha = self.turned(model, &x, &g, &now.alpha)?;
             let next = self.point(x, g, alpha)?;
-            if next.merit <= (1.0 - FALLS * t) * now.merit {
+            if next.merit <= (1.0 - NEWTON_FALLS * t) * now.merit {
                 return Ok((next, true));
             }
             if next.merit < best.merit {

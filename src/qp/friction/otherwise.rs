@@ -2,10 +2,11 @@
 //! `make rungs` counts what each saves.
 
 use crate::error::{Kind, Result};
+use crate::numbers::friction::{PATH_LEFT, RHO};
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
-use crate::qp::friction::newton::{Point, Run, RHO};
-use crate::qp::friction::path::{DIRECTIONS, LEFT, LONG, SHORT};
+use crate::qp::friction::newton::{Point, Run};
+use crate::qp::friction::path::{DIRECTIONS, LONG, SHORT};
 use crate::qp::friction::slides::Shown;
 use crate::qp::friction::FrictionLimits;
 use crate::qp::Rung;
@@ -81,7 +82,7 @@ impl Run<'_, '_> {
         }
         face.finish(self.problem.cones);
         let mut model = self.model(face)?;
-        let step = self.enough(&mut model, start, (LEFT, DIRECTIONS))?;
+        let step = self.enough(&mut model, start, (PATH_LEFT, DIRECTIONS))?;
         let (x, g) = step.from(&start.x, &start.g, 1.0);
         let alpha = self.turned(&model, &x, &g, &start.alpha)?;
         let found = self.point(x, g, alpha)?;

@@ -7,6 +7,7 @@ use std::sync::Mutex;
 use crate::error::Result;
 use crate::linalg::dense::growing::Growing;
 use crate::linalg::vector::{axpy, dot, norm};
+use crate::numbers::rounding;
 use crate::platform::memory::headroom;
 use crate::platform::{interrupt, tally};
 use crate::qp::between_solves::locked;
@@ -14,15 +15,11 @@ use crate::qp::friction::face::Model;
 
 /// Limit of pairs; the oldest pair is dropped first.
 const MOST: usize = 200;
-/// Directions, and images of unit length, depend on others if less than this part is left beside these.
-const CUT: f64 = 1e-12;
 /// Multiplications per row and square of the number of pairs in a step beside its product: the images of all pairs on a new face, made
 /// orthonormal.
 const BESIDE: usize = 2;
 /// So many multiplications are cheap beside all else that a step does.
 const CHEAP: usize = 1_500_000;
-/// Rounding of a product, relative to its size.
-const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// Data that solves pass to later solves with equal F, G and rows.
 #[derive(Debug, Default, Clone)]
@@ -138,7 +135,7 @@ impl Pairs {
     /// The unit vector that v adds to the directions kept; none if v adds nothing. Combinations of directions that nearly agree would
     /// multiply the rounding of `G v`. In two passes, as rounding grows with what is removed.
     pub fn orthonormal(&self, mut v: Vec<f64>) -> Option<Vec<f64>> {
-        for least in [0.0, CUT] {
+        for least in [0.0, rounding::METHOD] {
             let size = norm(&v);
             if !(size > least && size < f64::INFINITY) {
                 return None;
@@ -169,11 +166,11 @@ impl Pairs {
         let column = |(j, Pair { v, image, unbalanced }): (usize, &Pair)| {
             let mut column = model.reduced(model.face.image(v, image))?;
             column.resize(rows, 0.0);
-            column[m + j] = NOISE * (norm(image) + 1.0) + unbalanced / model.face.rho;
+            column[m + j] = 16.0 * f64::EPSILON * (norm(image) + 1.0) + unbalanced / model.face.rho;
             Ok(column)
         };
         let columns = self.kept.iter().enumerate().skip(known).map(column).collect::<Result<_>>()?;
-        model.images.1.extend(columns, CUT);
+        model.images.1.extend(columns, rounding::METHOD);
         Ok(())
     }
 

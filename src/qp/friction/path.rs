@@ -3,31 +3,24 @@
 
 use crate::error::Result;
 use crate::linalg::vector::norm_max;
+use crate::numbers::friction::{
+    EPS_SHRINKS, EPS_SHRINKS_LESS, FIRST_EPS, PATH_FALLS, PATH_LEFT, RHO, SHORTEST_PATH_STEP, SHORT_PATH,
+};
+use crate::numbers::rounding;
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::Model;
-use crate::qp::friction::newton::{Point, Run, RHO};
+use crate::qp::friction::newton::{Point, Run};
 use crate::qp::friction::pairs::Step;
 use crate::qp::friction::smooth::{face, Smoothing};
 
 /// The path that ends when the states are known: most problems on which Newton's method cycles need no more.
-pub const SHORT: Way = Way { relaxed: 0.0, last: 1e-3, solves: Solves::Pairs { products: 40 } };
+pub const SHORT: Way = Way { relaxed: 0.0, last: SHORT_PATH, solves: Solves::Pairs { products: 40 } };
 /// The path that continues close to sliding.
-pub const LONG: Way = Way { relaxed: 1.0, last: LAST, solves: Solves::Pairs { products: 100 } };
-/// Smallest eps relative to the first eps: rounding.
-pub const LAST: f64 = 1e-14;
-/// The first eps, relative to the largest present or expected force.
-const FIRST: f64 = 0.3;
-/// Factors on eps after a full step, and after a shorter one.
-const SHRINKS: f64 = 0.5;
-const SHRINKS_LESS: f64 = 0.6;
+pub const LONG: Way = Way { relaxed: 1.0, last: rounding::SUM, solves: Solves::Pairs { products: 100 } };
 /// Limit of systems solved.
 const SYSTEMS: usize = 120;
 /// Limit of directions per system, and the part of its residual that may remain.
 pub const DIRECTIONS: usize = 10;
-pub const LEFT: f64 = 0.3;
-/// A step of length t must reduce the residual by at least this part of t.
-const FALLS: f64 = 0.1;
-const SHORTEST: f64 = 1e-4;
 
 impl Run<'_, '_> {
     /// Newton's method from the end point of a path that begins at the start.
@@ -50,7 +43,7 @@ impl Run<'_, '_> {
             Solves::Pairs { products } => self.limit.min(self.counts.products + products),
             Solves::Dense(_) => usize::MAX,
         };
-        let first = FIRST * norm_max(&now.x).max(rho * self.scale / root);
+        let first = FIRST_EPS * norm_max(&now.x).max(rho * self.scale / root);
         let mut eps = first;
         for _ in 0..SYSTEMS {
             if self.is_met(&now) || eps <= way.last * first || self.counts.products >= end {
@@ -60,7 +53,7 @@ impl Run<'_, '_> {
             let (face, before) = face(cones, &now.x, &now.r, rho, by);
             let mut model = self.model(face)?;
             let step = match way.solves {
-                Solves::Pairs { .. } => self.enough(&mut model, &now, (LEFT, DIRECTIONS))?,
+                Solves::Pairs { .. } => self.enough(&mut model, &now, (PATH_LEFT, DIRECTIONS))?,
                 Solves::Dense(dense) => {
                     self.counts.direct += 1;
                     dense.solved(&self.problem, &model.face, &now)?.0
@@ -70,7 +63,7 @@ impl Run<'_, '_> {
             let (next, t, left) = self.shortened(&model, &now, &step, (by, before))?;
             now = next;
             if left <= eps * root {
-                eps *= if t == 1.0 { SHRINKS } else { SHRINKS_LESS };
+                eps *= if t == 1.0 { EPS_SHRINKS } else { EPS_SHRINKS_LESS };
             }
         }
         Ok(now)
@@ -112,7 +105,7 @@ impl Run<'_, '_> {
             let alpha: Vec<f64> =
                 now.alpha.iter().zip(&there).map(|(now, there)| now + t * (there - now)).collect();
             let left = face(cones, &x, &self.gaps(&g, &alpha), rho, by).1;
-            if left <= (1.0 - FALLS * t) * before || t <= SHORTEST {
+            if left <= (1.0 - PATH_FALLS * t) * before || t <= SHORTEST_PATH_STEP {
                 let next = self.point(x, g, alpha)?;
                 let next = if next.merit.is_finite() { next } else { now.clone() };
                 return Ok((next, t, left));

@@ -9,23 +9,13 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm, norm_max};
+use crate::numbers::friction::{SLIDE_OR_REST, STEADY, STIFFEST, WEAKER, WEAKEST};
 use crate::qp::friction::direct::Dense;
 use crate::qp::friction::newton::{Point, Run};
 use crate::qp::friction::path::SHORT;
 use crate::qp::friction::supports::Supported;
 use crate::qp::friction::{FrictionLimits, FrictionProblem, FrictionStart, Slide};
 use crate::qp::{Counts, Rung};
-
-/// Stiffness of the supports, no unit, the last one also the accuracy of their forces: rows have the compliance 1, the modes of a body `|G_p| = 1`.
-const STIFFEST: f64 = 1e-3;
-const WEAKER: f64 = 0.1;
-const WEAKEST: f64 = 1e-9;
-/// Twice in succession: a slide if the forces of the supports differ from L by less than this part of it, a rest if L is less than this part of
-/// the forces.
-const NOTHING: f64 = 0.05;
-/// A slide is steady if the gap rates of rows with forces, and forces not along the slip, are below this part of the
-/// largest.
-const STEADY: f64 = 1e-2;
 
 /// What weak supports show.
 pub enum Shown {
@@ -75,9 +65,9 @@ impl Run<'_, '_> {
                 let driving = extrapolated(supported.unheld(&before.x), carried);
                 let mut elastic = carried.to_vec();
                 axpy(-1.0, &driving, &mut elastic);
-                let is_rest = norm(&driving) <= NOTHING * norm(carried);
+                let is_rest = norm(&driving) <= SLIDE_OR_REST * norm(carried);
                 rests = if is_rest { rests + 1 } else { 0 };
-                let driven = (norm(&elastic) <= NOTHING * norm(&driving)).then_some(driving);
+                let driven = (norm(&elastic) <= SLIDE_OR_REST * norm(&driving)).then_some(driving);
                 let shown =
                     driven.and_then(|driving| steady(&self.problem, (&found.x[..rows], small), driving));
                 let is_twice = slide.is_some() && shown.is_some();

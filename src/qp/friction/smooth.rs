@@ -9,6 +9,8 @@
 //! allows.
 
 use crate::linalg::vector::dot;
+use crate::numbers::friction::SMALLEST_WEIGHT;
+use crate::numbers::linalg::ROOT;
 use crate::qp::friction::cones::{direction, length, Cones, Node};
 use crate::qp::friction::coordinates::{Coordinate, Law};
 use crate::qp::friction::face::{Face, State};
@@ -19,11 +21,6 @@ pub struct Smoothing {
     pub eps: f64,
     pub relaxed: f64,
 }
-
-/// Smaller weights are those of held values; the limit keeps dampings finite.
-const SMALLEST: f64 = 1e-100;
-/// Below this part of eps the direction of a tangential force has no effect.
-const SHORT: f64 = 1e-8;
 
 /// `phi(z)`, positive, without cancellation.
 fn phi(z: f64, eps: f64) -> f64 {
@@ -58,7 +55,7 @@ impl Disc {
         let far = phi(-s - b, eps);
         let slope_ = if s < b { 1.0 - below - above } else { slope(b - s, eps) - below };
         let (drop, by_limit) = (below + above, above - below);
-        let (ratio, rest) = if s <= SHORT * eps {
+        let (ratio, rest) = if s <= ROOT * eps {
             (slope_, drop)
         } else if s < b {
             let lost = (phi(s - b, eps) - far) / s;
@@ -67,7 +64,7 @@ impl Disc {
             let ratio = (b + far - phi(b - s, eps)) / s;
             (ratio, 1.0 - ratio)
         };
-        Self { ratio: ratio.max(SMALLEST), rest, slope: slope_.max(SMALLEST), drop, by_limit }
+        Self { ratio: ratio.max(SMALLEST_WEIGHT), rest, slope: slope_.max(SMALLEST_WEIGHT), drop, by_limit }
     }
 }
 
@@ -94,7 +91,7 @@ fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), by: 
     if let Some(row) = node.normal {
         normal = phi(trial.normal, eps);
         missed = now.normal - normal;
-        let p = slope(trial.normal, eps).max(SMALLEST);
+        let p = slope(trial.normal, eps).max(SMALLEST_WEIGHT);
         let damping = slope(-trial.normal, eps) / (rho * p);
         let shift = r[row] + damping * now.normal - missed / (rho * p);
         let coordinate = Coordinate::row(row, Law::Free { damping, shift });

@@ -2,16 +2,15 @@
 
 use crate::error::Result;
 use crate::linalg::vector::norm;
+use crate::numbers::friction::{MISSED_BALANCE, RHO};
+use crate::numbers::rounding;
 use crate::qp::friction::coordinates::of_rows;
 use crate::qp::friction::face::Face;
 use crate::qp::friction::motions::Motions;
 use crate::qp::friction::nearest::{Projected, Target};
-use crate::qp::friction::newton::{Point, Run, RHO};
+use crate::qp::friction::newton::{Point, Run};
 use crate::qp::friction::{FrictionLimits, FrictionProblem, FrictionStart};
 use crate::qp::{Counts, Observer};
-
-/// `|P d|` is zero if it is below this part of `|d|`.
-const NOTHING: f64 = 1e-14;
 
 impl<'a, 'w> Run<'a, 'w> {
     /// The method and the first x; if no forces within the cones balance the load, none with the remaining load.
@@ -73,8 +72,7 @@ impl<'a, 'w> Run<'a, 'w> {
 
     /// Increases that merit by the rounding of `G x = e` at the start, which later directions do not change.
     pub fn allow_for_balance(&mut self, x: &[f64]) -> Result<()> {
-        const TIMES: f64 = 4.0;
-        let floor = TIMES * self.balance_missed(x)?.sqrt() / RHO;
+        let floor = MISSED_BALANCE * self.balance_missed(x)?.sqrt() / RHO;
         self.small = if floor > self.small { floor } else { self.small };
         Ok(())
     }
@@ -86,7 +84,7 @@ impl<'a, 'w> Run<'a, 'w> {
             let mut v = v.to_vec();
             whole = whole.max(norm(&v));
             self.without_motions(&mut v)?;
-            if norm(&v) > NOTHING * whole {
+            if norm(&v) > rounding::SUM * whole {
                 return Ok(norm(&v));
             }
         }

@@ -16,26 +16,20 @@
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{axpy, norm};
 use crate::linalg::Csr;
+use crate::numbers::friction::{
+    DELTA_SHRINKS, DELTA_SHRINKS_LEAST, FIRST_DELTA, FREE_MOTIONS, UNHELD_ACCEPTED, WIDER,
+};
+use crate::numbers::rounding;
 use crate::qp::friction::cones::{Cones, Place};
-use crate::qp::friction::motions::{Motions, CUT};
+use crate::qp::friction::motions::Motions;
 use crate::qp::friction::nearest::{derivative, Projected, Target};
 use crate::qp::{nearest_point, Polyhedron, Qp};
 
 /// Limit of modes for which a square matrix over the modes, and one rotation of it per row and mode, are inexpensive.
 const FEW: usize = 500;
-/// delta relative to the largest diagonal entry of `G G'`: the first value, the factor, its root where Newton's method fails, up to the
-/// shortest step, and the last value.
-const FIRST: f64 = 1.0;
-const LESS: f64 = 0.01;
-const SHORTEST: f64 = 0.5;
-const LAST: f64 = 1e-13;
-/// Relative increase of the coefficients.
-const WIDER: f64 = 1e-6;
 /// Rounds in which nodes join those that resist the remainder; the second pass of a round removes the rounding of the first.
 const ROUNDS: usize = 10;
 const PASSES: usize = 2;
-/// Residual of an accepted solution, relative to |e|.
-const ACCEPTED: f64 = 1e-5;
 
 /// The forces for which `e - G l` is smallest in the norm of `weights`, one weight per mode; and `e - G l`.
 pub fn unheld(qp: &Qp, cones: &Cones, weights: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
@@ -78,10 +72,10 @@ fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Ve
 
 fn by_newton(qp: &Qp, cones: &Cones) -> Result<(Vec<f64>, Vec<f64>)> {
     let (mut motions, y) = (Motions::of(qp, cones)?, &vec![0.0; qp.b.len()]);
-    let is_solved = |now: &Projected| norm(&now.left) <= ACCEPTED * norm(qp.e);
-    let (mut shift, mut less, mut last, mut rest) = (FIRST, LESS, None, qp.e.to_vec());
+    let is_solved = |now: &Projected| norm(&now.left) <= UNHELD_ACCEPTED * norm(qp.e);
+    let (mut shift, mut less, mut last, mut rest) = (FIRST_DELTA, DELTA_SHRINKS, None, qp.e.to_vec());
     let mut before = rest.clone();
-    while shift >= LAST && less < SHORTEST {
+    while shift >= rounding::SOLVE && less < DELTA_SHRINKS_LEAST {
         let delta = shift * motions.size();
         // while the states of the nodes do not change, the remainder is a linear function of delta
         let from = |by: f64| {
@@ -97,7 +91,7 @@ fn by_newton(qp: &Qp, cones: &Cones) -> Result<(Vec<f64>, Vec<f64>)> {
             continue;
         }
         let next: Vec<f64> = now.beta.iter().map(|beta| delta * beta).collect();
-        before = if shift < FIRST { rest } else { next.clone() };
+        before = if shift < FIRST_DELTA { rest } else { next.clone() };
         (last, rest) = (Some((now, delta)), next);
         shift *= less;
     }
@@ -116,12 +110,12 @@ fn settle(
     rest: &mut [f64],
 ) -> Result<()> {
     // slips are known to a part of this size
-    let cut = if cones.are_half_lines() { 0.0 } else { CUT };
+    let cut = if cones.are_half_lines() { 0.0 } else { FREE_MOTIONS };
     for _ in 0..ROUNDS {
         // a node that slips resists no turn of its force; one that does not slip resists it, although its force is at the bound
         for place in &mut places {
             if let Place::Surface { ratio, .. } | Place::Rim { ratio, .. } = place {
-                *ratio = if *ratio < CUT { 0.0 } else { *ratio };
+                *ratio = if *ratio < FREE_MOTIONS { 0.0 } else { *ratio };
             }
         }
         let (coordinates, weights) = derivative(cones, &places);

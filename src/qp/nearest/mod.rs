@@ -6,13 +6,9 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::joined;
 use crate::linalg::vector::{axpy, dot, norm, norm_max, power_of_two_below, NOISE};
 use crate::linalg::{Csr, Matrix};
+use crate::numbers::linalg::SINGULAR;
+use crate::numbers::qp::DISTANCE_FALLS;
 use crate::platform::interrupt;
-
-/// A unit row is dependent if less than this part of it is outside the span of the active rows.
-const DEPENDENT: f64 = 1e-11;
-
-/// The distance from a0 has decreased if it is below this part of its previous value.
-const FALLS: f64 = 0.999;
 
 /// Each pass removes from the rows the rounding of the previous one.
 const PASSES: usize = 2;
@@ -115,7 +111,7 @@ impl ConnectedColumns {
             }
             // |a - a0| increases from row to row; if it decreases, rows are exchanged because of rounding
             let distance = active.distance();
-            if round > enough && distance < FALLS * farthest {
+            if round > enough && distance < DISTANCE_FALLS * farthest {
                 return Ok((active, contradictions));
             }
             farthest = distance;
@@ -175,7 +171,7 @@ impl<'a> Active<'a> {
             let turn = self.back(along.clone());
             let reach = norm(&outside);
             let full =
-                if reach > DEPENDENT { self.of.excess(p, &self.a) / (reach * reach) } else { f64::INFINITY };
+                if reach > SINGULAR { self.of.excess(p, &self.a) / (reach * reach) } else { f64::INFINITY };
             let mut first = (full, None);
             for (j, turn) in turn.iter().enumerate().filter(|(_, turn)| **turn > 0.0) {
                 if self.force[j] / turn < first.0 {
@@ -190,7 +186,7 @@ impl<'a> Active<'a> {
             }
             axpy(-step, &turn, &mut self.force);
             own += step;
-            if reach > DEPENDENT {
+            if reach > SINGULAR {
                 axpy(-step, &outside, &mut self.a);
             }
             match leaving {

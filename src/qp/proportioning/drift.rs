@@ -2,13 +2,7 @@
 //! error of all updates, as measured when the gradient was last recomputed.
 
 use crate::linalg::vector::norm;
-
-/// The relative error before the first measurement.
-const FIRST: f64 = 1e-5;
-/// Safety factor on measured relative errors.
-const SAFETY: f64 = 4.0;
-/// Errors matter from this part of the residual on.
-const FELT: f64 = 0.1;
+use crate::numbers::qp::{DRIFT_FELT, DRIFT_SAFETY, FIRST_DRIFT};
 
 pub struct Drift {
     share: f64,
@@ -20,7 +14,7 @@ pub struct Drift {
 
 impl Default for Drift {
     fn default() -> Self {
-        Self { share: FIRST, updates: 0.0, computed: 0 }
+        Self { share: FIRST_DRIFT, updates: 0.0, computed: 0 }
     }
 }
 
@@ -33,13 +27,13 @@ impl Drift {
     /// Notes the error of g that was found when g was recomputed.
     pub fn measured(&mut self, error: f64, steps: usize) {
         if self.updates > 0.0 && error.is_finite() {
-            self.share = SAFETY * error / self.updates;
+            self.share = DRIFT_SAFETY * error / self.updates;
         }
         (self.updates, self.computed) = (0.0, steps);
     }
 
     /// Whether errors may matter for a residual of this length; not before the first step.
     pub fn is_felt(&self, residual: f64, steps: usize) -> bool {
-        steps > self.computed && self.share * self.updates > FELT * residual
+        steps > self.computed && self.share * self.updates > DRIFT_FELT * residual
     }
 }

@@ -2,14 +2,12 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm, norm_max, ratio};
+use crate::numbers::qp::FAR_AWAY;
 use crate::qp::coarse::Coarse;
 use crate::qp::conjugate::Conjugate;
 use crate::qp::gradient::{feasible_step, Split};
 use crate::qp::proportioning::drift::Drift;
 use crate::qp::{Counts, Qp};
-
-/// If free motions are larger than all others by this factor, they result from a load that is held only by rounding.
-const FAR_AWAY: f64 = 1e6;
 
 pub struct Iterate<'a> {
     pub qp: Qp<'a>,

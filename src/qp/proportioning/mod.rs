@@ -16,6 +16,8 @@ mod stop;
 
 use crate::error::Result;
 use crate::linalg::vector::{dot, norm, norm_max, ratio, NOISE};
+use crate::numbers::qp::NO_FORCE;
+use crate::numbers::rounding;
 use crate::platform::interrupt;
 use crate::qp::between_solves::BetweenSolves;
 use crate::qp::coarse::Coarse;
@@ -29,11 +31,6 @@ use iterate::Iterate;
 use steps::Step;
 
 use stop::Stop;
-
-/// If no x balances e, a residual below this part of e is rounding of e.
-const ROUNDING: f64 = 1e-12;
-/// An entry of x below this part of the largest holds no motion.
-const NO_FORCE: f64 = 1e-15;
 
 /// Name of S6 in the log.
 const FIRST_POINT: &str = "first feasible point";
@@ -58,7 +55,7 @@ pub fn minimise(
             let (cones, alike) = (Cones::half_lines(qp.bounded)?, vec![1.0; qp.e.len()]);
             let (x, direction) = interrupt::part(FIRST_POINT, || unheld(&qp, &cones, &alike))?;
             let margin = ratio(norm(&direction), norm(qp.e));
-            if margin > ROUNDING {
+            if margin > rounding::METHOD {
                 return Ok(infeasible(x, Verdict::Infeasible { direction, margin }, &coarse));
             }
             x

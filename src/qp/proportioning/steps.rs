@@ -2,29 +2,18 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
+use crate::numbers::linalg::SINGULAR;
+use crate::numbers::qp::{
+    CURVATURE_MARGIN, CUT_SHORT, FLAT_ENTRY, GRADIENT_STEP, LOST, NO_FORCE, SHORT_STEP,
+};
 use crate::qp::gradient::feasible_step;
 use crate::qp::projection::project;
 use crate::qp::proportioning::iterate::Iterate;
 use crate::qp::Rung;
 
-/// Curvature counts as zero below this part of L.
-const SINGULAR: f64 = 1e-11;
-/// An entry of a direction without curvature is rounding below this part of the largest: otherwise such a direction would
-/// always seem to end at a distant bound.
-const ROUNDING: f64 = 1e-10;
-/// If the bound cuts a step below this part, a projection and another product are worthwhile.
-const FAR: f64 = 0.1;
-/// A direction is lost to rounding if less than this part is left beside the stored directions.
-const LOST: f64 = 1e-7;
-/// Steps shorter than this part of x are not stored.
-const SHORT: f64 = 1e-6;
 /// After this number of gradient projections, free motions are those of the last projection: otherwise projections alone
 /// would continue.
 const PROJECTIONS: usize = 3;
-/// Ratio of L to the largest curvature so far.
-const MARGIN: f64 = 1.1;
-/// Step of gradient projection in units of 1 / L.
-const GRADIENT_STEP: f64 = 1.5;
 
 /// The result of a step.
 pub enum Step {
@@ -104,11 +93,11 @@ impl Iterate<'_> {
         let singular =
             norm(&self.split.free) > self.noise() && curvature <= SINGULAR * self.curvature * dot(&p, &p);
         let t = if singular { f64::INFINITY } else { dot(&self.r, &p) / curvature };
-        let bound = self.feasible_step(&p, if singular { ROUNDING } else { 0.0 });
+        let bound = self.feasible_step(&p, if singular { FLAT_ENTRY } else { 0.0 });
         if bound.is_infinite() && !t.is_finite() {
             return Ok(if singular { Step::Unbounded { p } } else { Step::Stuck });
         }
-        let mut far = bound < FAR * t;
+        let mut far = bound < CUT_SHORT * t;
         if t.is_finite() {
             far |= self.expected.replace(t).is_none();
             self.kept.push(&p, &image);
@@ -163,7 +152,7 @@ impl Iterate<'_> {
     /// P7.3: stores the direction of a projected step, unless the step is so short that rounding has moved it out of the
     /// kernel of G.
     fn keep(&mut self, s: &[f64], image: &[f64]) {
-        if norm(s) > SHORT * norm(&self.x) {
+        if norm(s) > SHORT_STEP * norm(&self.x) {
             self.kept.push(s, image);
         }
     }
@@ -184,7 +173,7 @@ impl Iterate<'_> {
     fn observe_curvature(&mut self, p: &[f64], image: &[f64]) {
         let energy = dot(p, image);
         if self.split.norm() > self.noise() && energy > 0.0 {
-            self.curvature = self.curvature.max(MARGIN * energy / dot(p, p));
+            self.curvature = self.curvature.max(CURVATURE_MARGIN * energy / dot(p, p));
             self.observed = Some((energy, image.to_vec()));
         }
     }
@@ -194,7 +183,7 @@ impl Iterate<'_> {
     fn sharpen_curvature(&mut self) -> Result<()> {
         if let Some((energy, mut image)) = self.observed.take().filter(|(energy, _)| *energy > 0.0) {
             self.coarse.project(&vec![false; image.len()], &mut image)?;
-            self.curvature = self.curvature.max(MARGIN * dot(&image, &image) / energy);
+            self.curvature = self.curvature.max(CURVATURE_MARGIN * dot(&image, &image) / energy);
         }
         Ok(())
     }
@@ -314,7 +303,7 @@ impl Iterate<'_> {
         axpy(t, &s, &mut x);
         axpy(t, &image, &mut g);
         self.drift.add(t, &image);
-        let smallest = 1e-15 * crate::linalg::vector::norm_max(&x);
+        let smallest = NO_FORCE * crate::linalg::vector::norm_max(&x);
         for (x, bounded) in x.iter_mut().zip(self.qp.bounded) {
             if *bounded && *x <= smallest {
                 *x = 0.0;

@@ -1,18 +1,15 @@
 //! The stop: P1 of docs/method.md.
 
 use crate::linalg::vector::norm;
+use crate::numbers::qp::{BY_MISSED, MISSED, STAYS, TIGHTER};
 use crate::qp::proportioning::iterate::Iterate;
 use crate::qp::{Rung, Verdict};
 
-/// A point refused by less than this factor is corrected by some more steps.
-const MISSED: f64 = 1e3;
 /// How many times the tolerance is tightened if the point is not accepted, first by the violation.
 const TIGHTENINGS: usize = 8;
 const BY_VIOLATION: usize = 2;
 /// Limit of steps without gain: a solve that goes on without is not ended by more of them.
 const PLATEAU: usize = 50;
-/// A refusal does not depend on the residual if its violation is still above this part of the previous one.
-const STAYS: f64 = 0.5;
 
 /// Decides whether the residual is small enough, or cannot be reduced further.
 pub struct Stop {
@@ -65,7 +62,7 @@ impl Stop {
         let missed = missed.filter(|_| Rung::TightenBy.is_tried());
         if let Some(missed) = missed {
             self.tightenings += 1;
-            self.residual *= (0.4 / missed).min(0.4);
+            self.residual *= (BY_MISSED / missed).min(BY_MISSED);
         }
         missed.is_some()
     }
@@ -80,8 +77,8 @@ impl Stop {
             return Some(Verdict::Inaccurate);
         }
         self.tightenings += 1;
-        self.residual *= 0.1;
-        self.noise *= 0.1;
+        self.residual *= TIGHTER;
+        self.noise *= TIGHTER;
         None
     }
 }

@@ -4,14 +4,12 @@ use crate::error::Result;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Csr, Matrix};
 use crate::model::{Model, Parts};
+use crate::numbers::linalg::ROOT;
+use crate::numbers::rounding;
 use crate::platform::memory::{filled, reserved, zeros};
 use crate::qp::AnswerFace;
 
 const WHAT: &str = "the null space of a body that is cut";
-/// Accuracy of the motions of pieces.
-const ROUNDING: f64 = 1e-12;
-/// Motions of the body depend on others if less than this part of their length is left beside them.
-const DEPENDENT: f64 = 1e-8;
 
 /// R of a body from the null spaces of its pieces, n x r, `R'DR = unit`, unit the largest power of two that does not
 /// exceed its largest `K_ii`.
@@ -31,7 +29,7 @@ pub fn null_space(model: &Model, parts: &Parts, body: usize, bases: &[Matrix]) -
     let sizes: Vec<f64> = units.iter().map(|unit| unit.sqrt()).collect();
     let glue = glued(model, parts, body, &Motions { bases, blocks: &blocks, units: &units, sizes: &sizes })?;
     let held = filled(glue.rows(), false, WHAT)?;
-    let amplitudes = AnswerFace::new(&glue, &blocks, &held, ROUNDING)?.undetermined()?;
+    let amplitudes = AnswerFace::new(&glue, &blocks, &held, rounding::METHOD)?.undetermined()?;
     let mut vectors = Matrix::zeros(order, 0)?;
     for k in 0..amplitudes.cols {
         let mut motion = zeros(order, WHAT)?;
@@ -56,7 +54,7 @@ fn orthonormal(parts: &Parts, body: usize, mut vectors: Matrix) -> Matrix {
     for j in 0..vectors.cols {
         vectors.col_mut(j).iter_mut().enumerate().for_each(|(i, v)| *v *= root(i));
     }
-    let mut basis = vectors.orthonormalised(DEPENDENT);
+    let mut basis = vectors.orthonormalised(ROOT);
     for j in 0..basis.cols {
         basis.col_mut(j).iter_mut().enumerate().for_each(|(i, v)| *v /= root(i));
     }

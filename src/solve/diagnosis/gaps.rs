@@ -10,17 +10,13 @@ use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
 use crate::linalg::Csr;
 use crate::model::{contradiction, proof_of_rows};
+use crate::numbers::linalg::ROOT;
+use crate::numbers::solve::{BEYOND, TRAVELLED};
 use crate::qp::{nearest_point, Polyhedron};
 use crate::solve::case::Case;
 use crate::solve::gaps::Gaps;
 use crate::solve::work::work_of_loads;
 
-/// A displacement that exceeds all motion demanded by rows and caused by loads by this factor cannot satisfy the rows.
-const BEYOND: f64 = 1e6;
-/// Gaps may be differences of displacements larger by this factor, with the rounding of these displacements.
-const TRAVELLED: f64 = 1e3;
-/// A weight below this part of the largest counts as 0.
-const NEGLIGIBLE: f64 = 1e-8;
 /// Limit of multiplications of a finite search.
 const WORK: usize = 10_000_000_000;
 
@@ -52,7 +48,7 @@ impl<'a> Contradictions<'a> {
     /// proves the contradiction. Compliant rows contradict nothing.
     pub fn proved(&self, w: &[f64]) -> Result<Option<Error>> {
         let compliance = &self.case.ready.dual.compliance;
-        let negligible = NEGLIGIBLE * norm_max(w);
+        let negligible = ROOT * norm_max(w);
         let counts = |group: &usize| compliance[*group] == 0.0 && w[*group].abs() > negligible;
         let groups: Vec<usize> = (0..w.len()).filter(counts).collect();
         let weights = groups.iter().map(|&group| (self.gaps.holder[group], w[group])).collect();

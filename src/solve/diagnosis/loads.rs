@@ -7,6 +7,7 @@ use crate::linalg::graph::joined;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
 use crate::model::Accuracy;
+use crate::numbers::solve::{BEYOND, LOAD_RANGE};
 use crate::platform::memory::zeros;
 use crate::qp::friction::unheld;
 use crate::qp::Restricted;
@@ -14,11 +15,6 @@ use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::friction::cones;
 use crate::solve::scaled::Scaled;
-
-/// Ratio of the smallest to the largest load that is distinguished; a body without load counts as having the smallest.
-const RANGE: f64 = 1e-7;
-/// Rows and K resist a motion if this multiple of the load, and of the forces that it causes, could not move them.
-const BEYOND: f64 = 1e6;
 
 /// The part of a load that the nearest forces of the rows do not hold. Bodies with such a part that are joined by
 /// equality rows or by rows with a force move together: a cluster. Shares are relative to the cluster's load, |f|_{D^-1}
@@ -63,7 +59,7 @@ impl Unheld {
         let load = free(&case.data()?, scaled.load.clone());
         let sizes = ready.dual.sizes_of_loads(&load, &ready.rows.metric);
         let most = norm_max(&sizes);
-        let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(RANGE * most)).collect();
+        let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(LOAD_RANGE * most)).collect();
         (most > 0.0).then(|| Self::nearest(case, scaled, far, &weights)).transpose()
     }
 

@@ -8,11 +8,10 @@ use crate::linalg::cholesky::analysis::dissection::dissect;
 use crate::linalg::cholesky::analysis::metis::dissect;
 use crate::linalg::cholesky::analysis::minimum_degree::minimum_degree;
 use crate::linalg::sparse::graph::{joined, Graph};
+use crate::numbers::linalg::DISSECTION;
 use crate::platform::memory::{filled, reserved};
 
 const WHAT: &str = "the ordering of a body";
-/// Dissection takes as long as this number of multiplications per entry of the graph, 25 times as long as minimum degree.
-const DISSECTION: f64 = 500.0;
 
 /// The free dofs in the order of their elimination. The graph of nodes (dofs with identical neighbours) is ordered
 /// instead of that of dofs: it is 3 x smaller in 3D, and supernodes are not split.

@@ -6,9 +6,8 @@ use rayon::prelude::*;
 
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::supernodes::Supernodes;
+use crate::numbers::linalg::SHARED_WORK;
 
-/// Less work than this number of multiplications is not shared among threads.
-const SHARED: f64 = 2e7;
 /// Subtrees per thread, for an even distribution of work.
 const SUBTREES: usize = 4;
 /// Number of subtrees if it must not depend on the threads.
@@ -16,7 +15,7 @@ const PARTS: usize = 16;
 
 /// Whether the threads of the present pool shall share this work.
 pub fn shared(work: f64) -> bool {
-    work > SHARED && rayon::current_thread_index().is_some()
+    work > SHARED_WORK && rayon::current_thread_index().is_some()
 }
 
 /// Runs all tasks, in parallel in the present pool or one after the other.
@@ -55,7 +54,7 @@ pub fn outside<'a>(
 fn of_equal_work(nodes: &Supernodes, count: usize) -> Option<Vec<Range<usize>>> {
     let mut work: Vec<f64> = nodes.nodes().map(|node| node.work()).collect();
     let most = work.iter().sum::<f64>() / count as f64;
-    if most < SHARED {
+    if most < SHARED_WORK {
         return None;
     }
     let mut first: Vec<usize> = (0..nodes.count()).collect();

@@ -9,13 +9,10 @@ use crate::error::Result;
 use crate::linalg::cholesky::analysis::blocks::Blocks;
 use crate::linalg::cholesky::analysis::elimination::{elimination_tree, postorder, NONE};
 use crate::linalg::sparse::graph::Graph;
+use crate::numbers::linalg::RELAXED;
 use crate::platform::memory::reserved;
 
 const WHAT: &str = "the pattern of a Cholesky factor";
-
-/// A supernode is merged with its parent if at most this part of their common panel is zero, depending on its number of
-/// columns. Larger panels make faster products; the zeros cost memory and work.
-const RELAXED: [(usize, f64); 3] = [(12, 0.9), (48, 0.25), (usize::MAX, 0.05)];
 
 /// Supernodes in postorder. The panel of a supernode has the entries of L in its columns: height x width, column-major,
 /// first the rows of the columns themselves, then `rows`.

@@ -18,6 +18,7 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::linalg::cholesky::analysis::subtrees::each;
+use crate::numbers::linalg::HELD_PIVOT;
 
 /// Columns of a tile.
 pub const TILE: usize = 256;
@@ -47,9 +48,6 @@ pub fn update_column(b: usize, j: usize) -> Range<usize> {
     let column = tile_start(b, t) + (j - t * TILE) * height;
     column + (j - t * TILE)..column + height
 }
-
-/// The value of a held pivot: the unknown of its row is 0 in every solution, as if row and column did not exist.
-pub const HELD: f64 = 1e200;
 
 /// Workspace of the dense kernels.
 pub fn scratch() -> StackReq {
@@ -172,7 +170,7 @@ fn factorize_holding(mut a: MatMut<'_, f64>, hold: f64) -> Result<(), usize> {
         if pivot.is_nan() {
             return Err(j);
         }
-        let root = if pivot > hold { pivot.sqrt() } else { HELD.sqrt() };
+        let root = if pivot > hold { pivot.sqrt() } else { HELD_PIVOT.sqrt() };
         a[(j, j)] = root;
         (j + 1..n).for_each(|i| a[(i, j)] /= root);
         for k in j + 1..n {

@@ -2,9 +2,10 @@
 
 use crate::error::Result;
 use crate::linalg::semidefinite::resisted::{parts, Parts};
-use crate::linalg::semidefinite::WEAK;
+
 use crate::linalg::vector::{dot, norm};
 use crate::linalg::{Csr, Matrix};
+use crate::numbers::linalg::{ADDED, WEAK};
 
 /// The motions of one block that the rows resist, r_p x rank, and the free motions, r_p x (r_p - rank). `T'W_pp T = I`
 /// but for motions that are resisted by less than the root of `WEAK` of |G|: scaled as if by this, or rounding would look like resistance.
@@ -15,9 +16,6 @@ pub struct Block {
 }
 
 impl Block {
-    /// Limit of the part that rows outside some faces may add to `T'W_pp T = I`.
-    const ADDED: f64 = 1e3;
-
     /// For the rows that all faces have, if they resist all motions of the block well, and the other rows, which faces
     /// may hold, do not resist them far better; none if every face needs its own. All columns of the block are stored.
     pub fn for_all_faces(common: Csr, others: &Csr, limits: (f64, f64)) -> Result<Option<Self>> {
@@ -27,8 +25,7 @@ impl Block {
             dot(&turned, &turned)
         };
         let is_held = block.free.cols == 0 && !block.weak;
-        let serves =
-            others.rows() == 0 || (is_held && (0..others.rows()).map(added).sum::<f64>() <= Self::ADDED);
+        let serves = others.rows() == 0 || (is_held && (0..others.rows()).map(added).sum::<f64>() <= ADDED);
         Ok(serves.then_some(block))
     }
 

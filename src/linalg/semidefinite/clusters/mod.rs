@@ -19,7 +19,8 @@ use std::sync::Arc;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::semidefinite::resisted::sorted;
-use crate::linalg::semidefinite::{DOUBTFUL, WEAK};
+use crate::numbers::linalg::{DOUBTFUL, WEAK};
+
 use crate::linalg::vector::{dot, norm, NOISE};
 use crate::linalg::{Cholesky, Csr, Matrix, Symmetric};
 use crate::platform::memory::{headroom, headroom_with, SMALL_MATRICES};

@@ -5,6 +5,7 @@ use super::coarsening::{levels, Level};
 use super::separator::{Separator, BETWEEN};
 use super::weighted::Weighted;
 use crate::linalg::random::Random;
+use crate::numbers::linalg::HEAVIEST;
 
 /// Nodes of the coarsest graph: an eighth of those of the graph, within these bounds.
 const COARSEST: (usize, usize) = (40, 100);
@@ -30,7 +31,7 @@ pub fn separator(graph: &Weighted) -> Option<Separator> {
 
 /// Limit of the node weights: a coarse graph with much heavier nodes has no good halves.
 fn heaviest(graph: &Weighted) -> i32 {
-    (1.5 * f64::from(graph.total()) / COARSEST.1 as f64).ceil() as i32
+    (HEAVIEST * f64::from(graph.total()) / COARSEST.1 as f64).ceil() as i32
 }
 
 fn from_the_coarsest(graph: &Weighted, random: &mut Random) -> Option<Separator> {

@@ -6,12 +6,12 @@
 
 use std::collections::BinaryHeap;
 
+use crate::numbers::linalg::IMBALANCE;
+
 use super::weighted::Weighted;
 
 /// The label of a node of the separator.
 pub const BETWEEN: u8 = 2;
-/// A side must not exceed half of the total weight by more than this factor.
-const IMBALANCE: f64 = 1.2;
 const SWEEPS: usize = 16;
 
 pub struct Separator {

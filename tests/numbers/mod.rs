@@ -1,0 +1,205 @@
+//! Every threshold of the library stands in src/numbers, and docs/numbers.md is their table, which `make numbers` writes.
+
+use std::env;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::layering::source::{is_word, line_of, test_ranges, without_text, words};
+
+/// What an expression may have without a name: zeros, ones, halves and counts of a formula; the variance of rounding is 1 / 12,
+/// a per cent 1 / 100, digits have the base 10.
+const PLAIN: [f64; 9] = [0.0, 0.5, 1.0, 2.0, 3.0, 4.0, 10.0, 12.0, 100.0];
+
+const PAGE: &str = "docs/numbers.md";
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The sources of a folder of the library, without tests: (path from the root, text).
+fn sources(folder: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    for path in paths {
+        let name = path.strip_prefix(root()).unwrap().to_str().unwrap().to_owned();
+        if path.is_dir() && !name.ends_with("tests") {
+            found.extend(sources(&name));
+        } else if name.ends_with(".rs") && !name.ends_with("tests.rs") {
+            found.push((name, fs::read_to_string(path).unwrap()));
+        }
+    }
+    found
+}
+
+/// Real literals of the code with their positions: `1e-8`, `0.5`, `2.0`; not `0..3`, `x.0`, `1_u64`.
+fn literals(code: &str) -> Vec<(usize, f64)> {
+    let bytes = code.as_bytes();
+    let is_part = |at: usize| {
+        let c = bytes[at];
+        let sign = (c == b'-' || c == b'+') && matches!(bytes[at - 1], b'e' | b'E');
+        is_word(c) || sign || c == b'.' && bytes.get(at + 1).is_some_and(u8::is_ascii_digit)
+    };
+    let mut found = Vec::new();
+    let mut at = 1;
+    while at < bytes.len() {
+        let begins = bytes[at].is_ascii_digit() && !is_word(bytes[at - 1]) && bytes[at - 1] != b'.';
+        if !begins {
+            at += 1;
+            continue;
+        }
+        let start = at;
+        while at < bytes.len() && (at == start || is_part(at)) {
+            at += 1;
+        }
+        let text = code[start..at].replace('_', "").replace("f64", "");
+        if !text.starts_with("0x") && (text.contains(['.', 'e']) || code[start..at].ends_with("f64")) {
+            found.extend(text.parse().ok().map(|value| (start, value)));
+        }
+    }
+    found
+}
+
+/// Literals that are thresholds without a name.
+fn unnamed(text: &str) -> Vec<(usize, f64)> {
+    let code = without_text(text);
+    let tests = test_ranges(&code);
+    let of_eps = |at: usize| {
+        code[at..].chars().take(24).collect::<String>().contains("EPSILON")
+            || code[..at].ends_with("EPSILON / ")
+    };
+    literals(&code)
+        .into_iter()
+        .filter(|(at, value)| {
+            !PLAIN.contains(value) && !of_eps(*at) && !tests.iter().any(|test| test.contains(at))
+        })
+        .map(|(at, value)| (line_of(&code, at), value))
+        .collect()
+}
+
+struct Entry {
+    name: String,
+    value: String,
+    meaning: String,
+}
+
+/// The entries of one file of src/numbers, a comment and a constant each.
+fn entries(text: &str) -> Vec<Entry> {
+    let (mut found, mut meaning) = (Vec::new(), Vec::new());
+    for line in text.lines() {
+        if let Some(words) = line.strip_prefix("/// ") {
+            meaning.push(words);
+        } else if let Some((name, value)) =
+            line.strip_prefix("pub const ").and_then(|line| line.split_once(": "))
+        {
+            let value = value.split_once(" = ").map_or(value, |typed| typed.1);
+            let (name, value) = (name.to_owned(), value.trim_end_matches(';').to_owned());
+            found.push(Entry { name, value, meaning: std::mem::take(&mut meaning).join(" ") });
+        }
+    }
+    found
+}
+
+/// The files that use an entry, without `src/` and `.rs`.
+fn users(group: &str, name: &str, sources: &[(String, String)]) -> Vec<String> {
+    let named = |text: &str| {
+        let code = without_text(text);
+        let imported = code.split(';').any(|statement| {
+            let of_group = statement.trim_start().starts_with(&format!("use crate::numbers::{group}"));
+            of_group && words(statement, name).next().is_some()
+        });
+        imported || words(&code, group).any(|at| code[at..].starts_with(&format!("{group}::{name}")))
+    };
+    let users = sources.iter().filter(|(_, text)| named(text));
+    users.map(|(path, _)| path.trim_start_matches("src/").trim_end_matches(".rs").to_owned()).collect()
+}
+
+fn page(library: &[(String, String)]) -> String {
+    let mut page = String::from(
+        "# Numbers\n\nEvery threshold of the library that is not a small multiple of eps = 2^-52, from the files of `src/numbers`; \
+         `make numbers` writes this\npage, and a test refuses any other. Every number is a ratio, a power of a ratio or a count: none \
+         has a unit. P, J and S refer to [method.md](method.md).\n",
+    );
+    for (path, text) in sources("src/numbers") {
+        let entries = entries(&text);
+        if entries.is_empty() {
+            continue;
+        }
+        let title = text.lines().take_while(|line| line.starts_with("//!"));
+        let title: Vec<&str> = title.map(|line| line.trim_start_matches("//! ")).collect();
+        let group = path.trim_start_matches("src/numbers/").trim_end_matches(".rs");
+        writeln!(
+            page,
+            "\n## `{group}`\n\n{}\n\n| number | value | meaning | used in |\n|---|---|---|---|",
+            title.join(" ")
+        )
+        .unwrap();
+        for Entry { name, value, meaning } in entries {
+            let used = users(group, &name, library)
+                .iter()
+                .map(|path| format!("`{path}`"))
+                .collect::<Vec<_>>()
+                .join(", ");
+            let value = value.trim_end_matches(".0");
+            writeln!(page, "| `{name}` | {value} | {} | {used} |", meaning.replace('|', "\\|")).unwrap();
+        }
+    }
+    page
+}
+
+fn library() -> Vec<(String, String)> {
+    sources("src").into_iter().filter(|(path, _)| !path.starts_with("src/numbers/")).collect()
+}
+
+#[test]
+fn every_threshold_has_a_name_and_a_reason_in_one_place() {
+    let mut faults = Vec::new();
+    // defaults and ranges of the options are in docs/options.md
+    for (path, text) in library().iter().filter(|(path, _)| path != "src/model/settings.rs") {
+        faults.extend(
+            unnamed(text)
+                .iter()
+                .map(|(line, value)| format!("{path}:{line}: {value:e} has no name in src/numbers")),
+        );
+    }
+    let library = library();
+    for (path, text) in sources("src/numbers") {
+        let group = path.trim_start_matches("src/numbers/").trim_end_matches(".rs");
+        for entry in entries(&text) {
+            if entry.meaning.split(' ').count() < 3 {
+                faults.push(format!("{path}: {} has no meaning", entry.name));
+            }
+            if users(group, &entry.name, &library).is_empty() {
+                faults.push(format!("{path}: nothing uses {}", entry.name));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn the_page_of_numbers_is_that_of_the_sources() {
+    let page = page(&library());
+    let path = root().join(PAGE);
+    if env::var("NUMBERS").is_ok_and(|way| way == "write") {
+        fs::write(&path, &page).unwrap();
+    }
+    assert!(
+        fs::read_to_string(path).unwrap() == page,
+        "{PAGE} differs from src/numbers: `make numbers` writes it"
+    );
+}
+
+#[test]
+fn a_threshold_in_an_expression_is_seen() {
+    let seen =
+        |line: &str| unnamed(&format!("fn f() {{ {line} }}")).iter().map(|found| found.1).collect::<Vec<_>>();
+    assert_eq!(seen("x < 1e-8 * y || x > 0.3 || x < 2.5e+3"), [1e-8, 0.3, 2.5e3]);
+    assert_eq!(seen("let x = 7_000f64;"), [7000.0]);
+    assert_eq!(
+        seen("x <= 64.0 * f64::EPSILON * 0.5 * y; a.0 .1; for i in 0..10 {} 1_u64; \"1e-8\" // 1e-8"),
+        []
+    );
+}
