@@ -38,7 +38,7 @@ described() {
 
 # prototypes HEADER: functions, of the host too, with the names of their parameters, which libabigail does not compare: two of
 # one type may have changed places.
-prototypes() { plain "$1" | grep 'feti_[a-z0-9_]*)\{0,1\}(' | sort; }
+prototypes() { plain "$1" | grep 'feti_[a-z0-9_]*)\{0,1\}(' | sed 's/struct //g' | sort; }
 
 # constants HEADER: their definitions, without the version.
 constants() { ${CC:-cc} -E -dM -x c "$1" | grep '^#define FETI_' | grep -v FETI_CONTACT_ | sort; }

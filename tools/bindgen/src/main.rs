@@ -115,7 +115,7 @@ fn run(options: &Options, sections: &[order::Section]) -> Result<(), String> {
 /// Header and Fortran module of the given (file name, text) pairs.
 fn generate(sources: &[(String, String)], version: [u32; 3]) -> Result<[String; 2], String> {
     let api = checked(sources, version)?;
-    Ok([c_header::print(&api)?, fortran::print(&api)])
+    Ok([c_header::print(&api), fortran::print(&api)])
 }
 
 fn checked(sources: &[(String, String)], version: [u32; 3]) -> Result<model::Api, String> {

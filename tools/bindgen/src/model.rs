@@ -113,6 +113,8 @@ pub struct Function {
     pub doc: Doc,
     /// Name of the file it stands in.
     pub source: String,
+    /// Whether another function has its description: that for indices of 32 bits.
+    pub is_twin: bool,
 }
 
 impl Function {

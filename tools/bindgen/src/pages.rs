@@ -53,8 +53,10 @@ fn page(api: &Api, faces: &Faces, function: &Function) -> String {
     let _ =
         write!(out, "\n## C\n\n```c\n#include <feti_contact.h>\n\n{};\n```\n", prototype(function, WIDTH));
     write_fortran(&mut out, api, faces, function);
-    write_arguments(&mut out, api, function);
-    write_results(&mut out, api, function);
+    if !function.is_twin {
+        write_arguments(&mut out, api, function);
+        write_results(&mut out, api, function);
+    }
     for paragraph in &after {
         let _ = write!(out, "\n{}\n", paragraph.replacen("Safety:", "**Safety.**", 1));
     }
@@ -124,7 +126,7 @@ fn write_results(out: &mut String, api: &Api, function: &Function) {
     for (status, when) in statuses::results(api, function) {
         let _ = writeln!(out, "| `{status}` | {} |", cell(&linked(api, function, &when)));
     }
-    out.push_str("\nAll numbers: [statuses](statuses.md).\n");
+    out.push_str("\nAfter a failure nothing is written or changed. All numbers: [statuses](statuses.md).\n");
 }
 
 /// Whether the page of types has a heading of this name.

@@ -129,12 +129,12 @@ fn a_callback_is_a_function_pointer_in_c_and_an_abstract_interface_in_fortran() 
     let ty = "Option<unsafe extern \"C\" fn(user: *mut c_void, now: *const feti_info) -> i32>";
     let [header, module] = header_and_module(&with_callback(ty)).unwrap();
     assert!(
-        header.contains("typedef int32_t (*feti_hear_fn)(void *user, const struct feti_info *now);"),
+        header.contains("typedef int32_t (*feti_hear_fn)(void *user, const feti_info *now);"),
         "{header}"
     );
     assert!(header.contains("int32_t feti_tell(feti_hear_fn callback, void *user);"), "{header}");
     for line in [
-        "function feti_hear_fn(user, now) bind(C)",
+        "integer(c_int32_t) function feti_hear_fn(user, now) bind(C)",
         "type(c_ptr), value :: user",
         "type(feti_info), intent(in) :: now",
         "type(c_funptr), value :: callback",
@@ -183,7 +183,7 @@ fn handles_are_incomplete_in_c_and_structs_complete() {
     let [header, module] =
         header_and_module(&with_argument("*mut feti_problem", "in", "scalar", "")).unwrap();
     assert!(header.contains("typedef struct feti_problem feti_problem;"), "{header}");
-    assert!(header.contains("int32_t feti_do(struct feti_problem *x);"), "{header}");
+    assert!(header.contains("int32_t feti_do(feti_problem *x);"), "{header}");
     for field in ["int32_t type;", "char function[40];", "const char *name;"] {
         assert!(header.contains(field), "{header}");
     }
@@ -216,8 +216,8 @@ fn constants_and_version_come_out_in_both_languages() {
 fn documentation_reaches_both_outputs_within_the_fortran_line() {
     let rule = "word ".repeat(60);
     let [header, module] = header_and_module(&with_argument("i32", "in", "scalar", &rule)).unwrap();
-    assert!(header.contains(" * Does it.") && header.contains(" * @param[in] x (scalar) word"), "{header}");
-    assert!(module.contains("!> Does it.") && module.contains("!> @param[in] x (scalar) word"), "{module}");
+    assert!(header.contains(" * Does it.") && header.contains(" * @param x word"), "{header}");
+    assert!(module.contains("!> Does it."), "{module}");
     assert!(module.lines().all(|line| line.len() <= 132));
 }
 
@@ -266,16 +266,16 @@ fn the_header_shows_problem_rules_example_and_contents_before_the_declarations()
     }
     for [text, call] in [[declarations, "("], [&module, "() bind(C"]] {
         let places = [
-            "Problem\n",
-            "Bodies\n",
+            "Problem ===",
+            "Bodies ===",
             "feti_body_add",
             "stiffness_i32",
             "stiffness_i64",
-            "Solve\n",
+            "Solve ===",
             "feti_solve",
         ]
         .map(|name| {
-            let wanted = if name.ends_with('\n') { name.to_string() } else { format!("{name}{call}") };
+            let wanted = if name.ends_with('=') { name.to_string() } else { format!("{name}{call}") };
             text.find(&wanted).unwrap_or_else(|| panic!("no `{wanted}` in\n{text}"))
         });
         assert!(places.is_sorted(), "{places:?} in\n{text}");
