@@ -1356,14 +1356,14 @@ int32_t feti_state_save(feti_problem *p, int64_t *id);
  * options keep their current values; unused start values are dropped. The state stays saved. FETI_STATE if
  * bodies were added since the state was saved; after a failure nothing is changed.
  *
- * @param id number of the state
+ * @param id number of the state, from 0
  */
 int32_t feti_state_restore(feti_problem *p, int64_t id);
 
 /**
  * Drops a saved state.
  *
- * @param id number of the state
+ * @param id number of the state, from 0
  */
 int32_t feti_state_drop(feti_problem *p, int64_t id);
 

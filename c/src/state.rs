@@ -71,7 +71,7 @@ pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> 
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `id` | in | scalar | number of the state |
+/// | `id` | in | scalar | number of the state, from 0 |
 #[no_mangle]
 pub extern "C" fn feti_state_restore(p: *mut feti_problem, id: i64) -> i32 {
     enter(p, call!(feti_state_restore(p, id)), |problem| problem.restore_state(self::id(id, "id")?))
@@ -82,7 +82,7 @@ pub extern "C" fn feti_state_restore(p: *mut feti_problem, id: i64) -> i32 {
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `id` | in | scalar | number of the state |
+/// | `id` | in | scalar | number of the state, from 0 |
 #[no_mangle]
 pub extern "C" fn feti_state_drop(p: *mut feti_problem, id: i64) -> i32 {
     enter(p, call!(feti_state_drop(p, id)), |problem| problem.drop_state(self::id(id, "id")?))

@@ -36,6 +36,7 @@ mod typed;
 
 const HEADER: &str = "include/feti_contact.h";
 const FORTRAN: &str = "include/fortran/feti_contact_c.f90";
+const FORTRAN77: &str = "include/fortran/feti_contact_f77_calls.f90";
 
 struct Options {
     check: bool,
@@ -96,7 +97,7 @@ fn run(options: &Options, sections: &[order::Section]) -> Result<(), String> {
     }
     let generated = generate(&sources, version)?;
     let mut drift = Vec::new();
-    for (name, text) in [HEADER, FORTRAN].iter().zip(generated) {
+    for (name, text) in [HEADER, FORTRAN, FORTRAN77].iter().zip(generated) {
         let path = options.root.join(name);
         if options.check {
             let committed = fs::read_to_string(&path).unwrap_or_default();
@@ -113,9 +114,9 @@ fn run(options: &Options, sections: &[order::Section]) -> Result<(), String> {
 }
 
 /// Header and Fortran module of the given (file name, text) pairs.
-fn generate(sources: &[(String, String)], version: [u32; 3]) -> Result<[String; 2], String> {
+fn generate(sources: &[(String, String)], version: [u32; 3]) -> Result<[String; 3], String> {
     let api = checked(sources, version)?;
-    Ok([c_header::print(&api), fortran::print(&api)])
+    Ok([c_header::print(&api), fortran::print(&api), f77::print(&api)])
 }
 
 fn checked(sources: &[(String, String)], version: [u32; 3]) -> Result<model::Api, String> {
@@ -125,16 +126,14 @@ fn checked(sources: &[(String, String)], version: [u32; 3]) -> Result<model::Api
 }
 
 fn write_pages(folder: &Path, root: &Path, api: &model::Api) -> Result<(), String> {
-    let (mut modules, mut face77) = (Vec::new(), Vec::new());
+    let mut modules = Vec::new();
     for path in files(&root.join("include/fortran"), "f90")? {
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        match name.strip_prefix("feti_contact").unwrap_or_default() {
-            "_c" => {} // generated
-            part if part.starts_with("_f77") => face77.push(read(&path)?),
-            _ => modules.push(read(&path)?),
+        if !name.contains("_f77") && !name.ends_with("_c") {
+            modules.push(read(&path)?);
         }
     }
-    let faces = pages::Faces { typed: typed::signatures(&modules), f77: f77::calls(&face77) };
+    let faces = pages::Faces { typed: typed::signatures(&modules), f77: f77::calls() };
     for (name, text) in pages::print(api, &faces) {
         write(&folder.join(name), &text)?;
     }

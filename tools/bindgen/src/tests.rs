@@ -1,6 +1,7 @@
 //! The rules of the generator, each on the smallest source that shows it.
 
 use crate::check::first_difference;
+use crate::f77;
 use crate::order::Section;
 use crate::{generate, options, package_version, run};
 
@@ -10,7 +11,8 @@ const INFO: &str = "#[repr(C)] pub struct feti_info { pub struct_size: i64, pub 
                     pub function: [c_char; 40], pub name: *const c_char }\n";
 
 fn header_and_module(source: &str) -> Result<[String; 2], String> {
-    generate(&[("ffi.rs".to_string(), source.to_string())], VERSION)
+    let [header, module, _] = generate(&[("ffi.rs".to_string(), source.to_string())], VERSION)?;
+    Ok([header, module])
 }
 
 fn module(source: &str) -> String {
@@ -280,4 +282,52 @@ fn the_header_shows_problem_rules_example_and_contents_before_the_declarations()
         });
         assert!(places.is_sorted(), "{places:?} in\n{text}");
     }
+}
+
+fn subroutines(function: &str) -> String {
+    let head = "/// A problem.\n#[repr(C)] pub struct feti_problem { _private: [u8; 0] }\n";
+    f77::print(&crate::checked(&[("a.rs".to_string(), format!("{head}{function}"))], [0, 1, 0]).unwrap())
+}
+
+#[test]
+fn integers_are_converted_and_numbers_count_from_one() {
+    let text = subroutines(
+        "/// Adds.\n///\n/// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n/// | p | in | scalar | |\n\
+         /// | n | in | scalar | |\n/// | body | out | scalar | |\n\
+         #[no_mangle] pub unsafe extern \"C\" fn feti_body_add(p: *mut feti_problem, n: i64, body: *mut i64) -> i32 { 0 }",
+    );
+    for line in [
+        "!> Adds. C: feti_body_add.",
+        "recursive subroutine ftbadd(ip, n, ibody, ierr)",
+        "  integer, intent(in) :: ip, n",
+        "  ierr = told(feti_body_add(handle(ip), wide(n), body))",
+        "  if (ierr == FETI_OK) call fit(body + 1, ibody, ierr)",
+    ] {
+        assert!(text.lines().any(|found| found == line), "no `{line}` in\n{text}");
+    }
+}
+
+#[test]
+fn an_argument_that_the_host_does_not_give_moves_the_places_of_the_others() {
+    let rows: String = ["p", "body", "n", "row_ptr", "col", "val", "base", "storage", "flags"]
+        .map(|name| {
+            let shape = if ["row_ptr", "col", "val"].contains(&name) { "n" } else { "scalar" };
+            format!("    /// | {name} | in | {shape} | |\n")
+        })
+        .concat();
+    let text = subroutines(&format!(
+        "twins! {{\n    /// Gives K.\n    ///\n    /// | argument | in/out | shape | rule |\n    /// |---|---|---|---|\n{rows}\
+         fn feti_body_stiffness_i32, feti_body_stiffness_i64(p: *mut feti_problem, body: i64, n: i64, row_ptr: *const I, \
+         col: *const I, val: *const f64, base: i32, storage: i32, flags: i32) |call| {{ 0 }} }}"
+    ));
+    let call = text.replace(" &\n   ", "");
+    assert!(call.contains("1_c_int32_t, narrow(istor), FETI_COPY), [1, 2, 3, 4, 5, 6, 0, 7, 0])"), "{text}");
+}
+
+#[test]
+fn a_page_has_the_statements_that_call_its_function() {
+    let calls = f77::calls();
+    assert_eq!(calls["feti_last_error"], ["CALL FTERR(IERR, TEXT)"]);
+    assert_eq!(calls["feti_friction_law"].len(), 2);
+    assert_eq!(calls["feti_body_numbering_i64"], ["CALL FTBNUM(IP, IBODY, N, INUM, IERR)"]);
 }
