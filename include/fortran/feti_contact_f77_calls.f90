@@ -455,8 +455,8 @@ recursive subroutine ftrows(ip, kind, m, iptr, ibody, idof, val, rhs, ifirst, ie
   integer, intent(out) :: ierr
   integer(c_int64_t), target :: first
 
-  ierr = told(feti_rows_add(handle(ip), narrow(kind), wide(m), iptr, integers(ibody), idof, val, 1_c_int32_t, reals(rhs, &
-    .true.), c_loc(first)), [1, 2, 3, 4, 5, 6, 7, 0, 8, 9])
+  ierr = told(feti_rows_add(handle(ip), narrow(kind), wide(m), iptr, integers(ibody), idof, val, 1_c_int32_t, &
+    reals(rhs, .true.), c_loc(first)), [1, 2, 3, 4, 5, 6, 7, 0, 8, 9])
   if (ierr == FETI_OK) call fit(first + 1, ifirst, ierr)
 end subroutine
 
@@ -471,8 +471,8 @@ recursive subroutine ftrowc(ip, kind, m, iptr, idof, val, rhs, ifirst, ierr)
   integer, intent(out) :: ierr
   integer(c_int64_t), target :: first
 
-  ierr = told(feti_rows_add(handle(ip), narrow(kind), wide(m), iptr, c_null_ptr, idof, val, 1_c_int32_t, reals(rhs, &
-    .true.), c_loc(first)), [1, 2, 3, 4, 0, 5, 6, 0, 7, 8])
+  ierr = told(feti_rows_add(handle(ip), narrow(kind), wide(m), iptr, c_null_ptr, idof, val, 1_c_int32_t, &
+    reals(rhs, .true.), c_loc(first)), [1, 2, 3, 4, 0, 5, 6, 0, 7, 8])
   if (ierr == FETI_OK) call fit(first + 1, ifirst, ierr)
 end subroutine
 
@@ -973,8 +973,8 @@ recursive subroutine ftdrow(ip, kind, icap, n, irow, w, ierr)
 
   ierr = FTEMEM
   allocate (found(max(icap, 1)), stat=refused)
-  if (refused == 0) ierr = told(feti_diagnosis_rows(handle(ip), narrow(kind), wide(icap), count, c_loc(found), reals(w, &
-    icap /= 0)))
+  if (refused == 0) ierr = told(feti_diagnosis_rows(handle(ip), narrow(kind), wide(icap), count, c_loc(found), &
+    reals(w, icap /= 0)))
   if (ierr == FETI_OK) call fit_list(count, icap, found, n, irow, ierr)
 end subroutine
 

@@ -132,20 +132,25 @@ fn statements(api: &Api, name: &str, arguments: &[Argument], result: &Type, bind
     out + "    end function\n"
 }
 
-/// A statement, continued with `&` where a line would pass the width.
+/// A statement, continued with `&` where a line would pass the width, but not inside of inner parentheses.
 pub fn continued(indent: &str, statement: &str) -> String {
     let mut out = String::new();
     let mut line = indent.to_string();
-    for word in statement.split(' ') {
-        let space = if line.trim().is_empty() { "" } else { " " };
-        if line.len() + space.len() + word.len() > LINE_WIDTH {
-            let _ = writeln!(out, "{line} &");
-            line = format!("{indent}  {word}");
-        } else {
-            line = format!("{line}{space}{word}");
+    let (mut open, mut piece) = (0, String::new());
+    for word in statement.split_inclusive(' ') {
+        open += word.matches('(').count();
+        open -= word.matches(')').count().min(open);
+        piece.push_str(word);
+        if open > 2 {
+            continue;
         }
+        if line.len() + piece.trim_end().len() > LINE_WIDTH && line.trim() != "" {
+            let _ = writeln!(out, "{} &", line.trim_end());
+            line = format!("{indent}  ");
+        }
+        line.push_str(&std::mem::take(&mut piece));
     }
-    let _ = writeln!(out, "{line}");
+    let _ = writeln!(out, "{}", (line + &piece).trim_end());
     out
 }
 

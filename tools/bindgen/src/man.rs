@@ -33,7 +33,7 @@ fn page(api: &Api, faces: &Faces, function: &Function) -> String {
         text(&prototype(function, 78))
     );
     if let Some(signatures) = faces.typed.get(name) {
-        let lines = signatures.iter().map(|signature| text(&signature.lines.join("\n")));
+        let lines = signatures.iter().map(|signature| text(&signature.join("\n")));
         let _ = write!(
             out,
             ".SS Fortran\n.nf\nuse feti_contact\n\n{}\n.fi\n",

@@ -69,7 +69,7 @@ fn write_fortran(out: &mut String, api: &Api, faces: &Faces, function: &Function
     if let Some(signatures) = faces.typed.get(&function.name) {
         out.push_str("\n```fortran\nuse feti_contact\n");
         for signature in signatures {
-            let _ = write!(out, "\n{}\n", signature.lines.join("\n"));
+            let _ = write!(out, "\n{}\n", signature.join("\n"));
         }
         out.push_str("```\n\nNumbers count from 1, sizes come from the arrays; without `stat` any status but FETI_OK ends the program. \
              As C has it:\n");
@@ -212,8 +212,7 @@ mod tests {
     }
 
     fn pages() -> BTreeMap<String, String> {
-        let signature =
-            Signature { name: "feti_add".into(), lines: vec!["subroutine feti_add(p, x)".into()] };
+        let signature = vec!["subroutine feti_add(p, x)".to_string()];
         let mut faces = Faces::default();
         faces.typed.insert("feti_add".to_string(), vec![signature]);
         faces.f77.insert("feti_add".to_string(), vec!["CALL FTADD(IP, IERR)".to_string()]);

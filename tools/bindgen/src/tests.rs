@@ -11,8 +11,9 @@ const INFO: &str = "#[repr(C)] pub struct feti_info { pub struct_size: i64, pub 
                     pub function: [c_char; 40], pub name: *const c_char }\n";
 
 fn header_and_module(source: &str) -> Result<[String; 2], String> {
-    let [header, module, _] = generate(&[("ffi.rs".to_string(), source.to_string())], VERSION)?;
-    Ok([header, module])
+    let mut texts =
+        generate(&[("ffi.rs".to_string(), source.to_string())], VERSION)?.into_iter().map(|(_, text)| text);
+    Ok([texts.next().unwrap(), texts.next().unwrap()])
 }
 
 fn module(source: &str) -> String {
@@ -330,4 +331,34 @@ fn a_page_has_the_statements_that_call_its_function() {
     assert_eq!(calls["feti_last_error"], ["CALL FTERR(IERR, TEXT)"]);
     assert_eq!(calls["feti_friction_law"].len(), 2);
     assert_eq!(calls["feti_body_numbering_i64"], ["CALL FTBNUM(IP, IBODY, N, INUM, IERR)"]);
+}
+
+/// The module `rows` that holds one function of C: `feti_rows_rhs` with these arguments and rows of its table.
+fn rows_module() -> String {
+    let source = format!(
+        "{HANDLE}/// Replaces right-hand sides.\n///\n/// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n\
+         /// | p | in | scalar | the handle |\n/// | kind | in | scalar | FETI_EQUALITY |\n/// | first | in | scalar | first row, from 0 |\n\
+         /// | rows | in | scalar | number of rows |\n/// | rhs | in | rows | c or h, length |\n\
+         #[no_mangle] pub unsafe extern \"C\" fn feti_rows_rhs(p: *mut feti_problem, kind: i32, first: i64, rows: i64, \
+         rhs: *const f64) -> i32 {{ 0 }}"
+    );
+    let texts = generate(&[("rows.rs".to_string(), source)], VERSION).unwrap();
+    texts.into_iter().find(|(path, _)| path.ends_with("feti_contact_rows.f90")).unwrap().1
+}
+
+#[test]
+fn a_typed_procedure_counts_from_one_and_takes_sizes_from_arrays() {
+    let text = rows_module();
+    for line in [
+        "  public :: rows_rhs",
+        "  !> Replaces right-hand sides. kind: FETI_EQUALITY. first: first row, from 1. rhs(rows): c or h, length.",
+        "  recursive subroutine rows_rhs(p, kind, first, rhs, stat, errmsg)",
+        "    real(real64), intent(in), contiguous :: rhs(:)",
+    ] {
+        assert!(text.lines().any(|found| found == line), "no `{line}` in\n{text}");
+    }
+    let call = text.replace(" &\n      ", " ");
+    let expected =
+        "feti_rows_rhs(handle_of(p), kind, int(first - 1, c_int64_t), size(rhs, kind=c_int64_t), rhs)";
+    assert!(call.contains(expected), "{text}");
 }

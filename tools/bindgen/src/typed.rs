@@ -1,206 +1,299 @@
-//! The signatures of the typed Fortran module, read from its sources: which subroutine calls which function of C.
+//! The typed Fortran modules: generic names, sizes from arrays, numbers from 1, `stat` and `errmsg`, from typed/table.
+//! What has logic of its own is written by hand in typed/*.f90, which become parts of these modules, and in modules of
+//! include/fortran.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
 
-/// A subroutine or function as the host sees it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Signature {
-    /// Its name in module feti_contact.
-    pub name: String,
-    /// The statement and the declarations of its arguments, a line each.
-    pub lines: Vec<String>,
+use crate::doc::wrap;
+use crate::fortran::{continued, write_doc, LINE_WIDTH};
+use crate::model::Api;
+use crate::order;
+use crate::procedure::{self, Kind};
+use crate::rules;
+
+const TABLE: &str = include_str!("typed/table");
+const WHOLE: &str = include_str!("typed/whole.f90");
+const PARTS: [(&str, &str); 5] = [
+    ("bodies", include_str!("typed/bodies.f90")),
+    ("elements", include_str!("typed/elements.f90")),
+    ("results", include_str!("typed/results.f90")),
+    ("states", include_str!("typed/states.f90")),
+    ("stiffness", include_str!("typed/stiffness.f90")),
+];
+
+/// A procedure of the table.
+#[derive(Clone, Debug, Default)]
+pub struct Entry {
+    pub module: &'static str,
+    pub generic: &'static str,
+    /// The name in module feti_contact, if it is not feti_ and the generic name.
+    face: Option<&'static str>,
+    pub name: &'static str,
+    pub by_hand: bool,
+    pub arguments: Vec<&'static str>,
+    pub function: &'static str,
+    pub note: &'static str,
+    /// (argument of C, condition, text)
+    pub checks: Vec<(&'static str, &'static str, &'static str)>,
+    /// (argument of C, value)
+    pub given: Vec<(&'static str, &'static str)>,
+    paragraphs: Vec<&'static str>,
 }
 
-struct Procedure {
-    name: String,
-    statement: String,
-    dummies: Vec<String>,
-    declarations: Vec<String>,
-    /// Functions of C.
-    calls: BTreeSet<String>,
-    /// Lines that call a subroutine, maybe one of the same module.
-    helpers: Vec<String>,
+impl Entry {
+    fn outside(&self) -> String {
+        self.face.map_or(format!("feti_{}", self.generic), str::to_string)
+    }
+
+    /// The specific procedures: for integers of 4 and 8 bytes, or one.
+    pub fn specifics(&self) -> Vec<(String, Option<Kind>)> {
+        match self.name.strip_suffix('*') {
+            Some(stem) => {
+                [Kind::Int32, Kind::Int64].map(|kind| (format!("{stem}{}", kind.name()), Some(kind))).to_vec()
+            }
+            None => vec![(self.name.to_string(), None)],
+        }
+    }
+
+    /// `NAME`, `WORD NAME`, both with or without arguments, before the function of C.
+    fn read(module: &'static str, line: &'static str) -> Self {
+        let (head, note) = line.split_once(": ").unwrap_or((line, ""));
+        let (head, function) = head.rsplit_once(' ').expect("a line names a function of C");
+        let (names, arguments) = head.split_once('(').unwrap_or((head, ""));
+        let by_hand = names.ends_with(" by hand");
+        let names = names.trim_end_matches(" by hand");
+        let (generic, name) = names.split_once(' ').unwrap_or((names, names));
+        let face = generic.split_once('=').map(|(_, face)| face);
+        let plain = |name: &'static str| name.split('=').next().unwrap_or(name);
+        let (generic, name) = (plain(generic), plain(name));
+        let arguments = arguments.strip_suffix(')').unwrap_or(arguments).split(", ").collect();
+        Entry { module, generic, face, name, by_hand, arguments, function, note, ..Entry::default() }
+    }
 }
 
-/// For every function of C the procedures that call it, with the interfaces of the host's functions that they take.
-/// `sources`: the modules, feti_contact.f90 among them.
-pub fn signatures(sources: &[String]) -> BTreeMap<String, Vec<Signature>> {
-    let texts: Vec<Vec<String>> = sources.iter().map(|text| statements(text)).collect();
-    // The names of the public face: name inside -> name outside.
-    let faces = texts.iter().flatten().filter(|line| line.starts_with("use ")).flat_map(|line| renamed(line));
-    let faces: BTreeMap<String, String> =
-        faces.filter(|pair| pair.0.starts_with("feti_")).map(|(outside, inside)| (inside, outside)).collect();
-    let modules: Vec<Vec<Procedure>> = texts.iter().map(|text| procedures(text)).collect();
+/// The modules of the table, each with what it is about, and its procedures.
+fn modules() -> Vec<(&'static str, &'static str, Vec<Entry>)> {
+    let mut modules: Vec<(_, _, Vec<Entry>)> = Vec::new();
+    for line in TABLE.lines().filter(|line| !line.is_empty() && !line.starts_with(['#', ':', '+'])) {
+        if let Some(heading) = line.strip_prefix("module ") {
+            let (name, about) =
+                heading.split_once(": ").unwrap_or((heading.trim_end_matches(" by hand"), ""));
+            modules.push((name, about, Vec::new()));
+            continue;
+        }
+        let Some((module, _, entries)) = modules.last_mut() else { continue };
+        let last = entries.last_mut();
+        match (line.get(..4), last) {
+            (Some("  ? "), Some(entry)) => {
+                let (condition, text) = line[4..].split_once(": ").expect("condition and text");
+                let (k, condition) = condition.split_once(' ').expect("number and condition");
+                entry.checks.push((k, condition, text));
+            }
+            (Some("  = "), Some(entry)) => entry.given.extend(line[4..].split_once(' ')),
+            (Some("  > "), Some(entry)) => entry.paragraphs.push(&line[4..]),
+            _ => entries.push(Entry::read(module, line)),
+        }
+    }
+    modules
+}
+
+/// The members of a struct that count from 0 in C.
+pub fn counted(structure: &str) -> Vec<&'static str> {
+    let mut lists = TABLE.lines().filter_map(|line| line.strip_prefix(": ")?.split_once(' '));
+    lists.find(|(name, _)| *name == structure).map_or(Vec::new(), |(_, members)| members.split(' ').collect())
+}
+
+/// (path, text) of every generated module.
+pub fn print(api: &Api) -> Vec<(String, String)> {
+    let generated = modules().into_iter().filter(|(_, about, _)| !about.is_empty());
+    let texts = generated.map(|(name, about, entries)| {
+        let known = entries
+            .into_iter()
+            .filter(|entry| api.functions.iter().any(|f| f.name == entry.function))
+            .collect();
+        (format!("include/fortran/feti_contact_{name}.f90"), module(api, name, about, known))
+    });
+    let whole = ("include/fortran/feti_contact.f90".to_string(), whole(api));
+    texts.chain([whole]).collect()
+}
+
+/// Module feti_contact: what hosts use of the others, by their names.
+fn whole(api: &Api) -> String {
+    let constants = order::groups(api)
+        .into_iter()
+        .flat_map(|group| group.constants)
+        .map(|constant| constant.name.clone());
+    let versions = api.version_constants().map(|(name, _)| name.to_string());
+    let mut lists = vec![("c", constants.chain(versions).collect::<Vec<_>>())];
+    for (name, _, entries) in modules() {
+        let known = known(api, entries);
+        let mut names = procedure::types(api, &known);
+        for entry in known {
+            let name = format!("{} => {}", entry.outside(), entry.generic);
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let more = TABLE.lines().skip_while(|line| !line.starts_with(&format!("module {name}"))).nth(1);
+        names.extend(more.and_then(|line| line.strip_prefix("+ ")).map(str::to_string));
+        lists.push((name, names));
+    }
+    let mut out =
+        format!("! Generated by tools/bindgen from c/src and tools/bindgen/src/typed. Do not edit.\n{WHOLE}");
+    for (module, names) in lists.iter().filter(|(_, names)| !names.is_empty()) {
+        // A name stays with its arrow.
+        let list = names.join(", ").replace(" => ", "=>");
+        out.push_str(
+            &continued("  ", &format!("use feti_contact_{module}, only: {list}")).replace("=>", " => "),
+        );
+    }
+    out + "  implicit none\n  public\nend module\n"
+}
+
+fn known(api: &Api, entries: Vec<Entry>) -> Vec<Entry> {
+    entries.into_iter().filter(|entry| api.functions.iter().any(|f| f.name == entry.function)).collect()
+}
+
+fn module(api: &Api, name: &str, about: &str, entries: Vec<Entry>) -> String {
+    let mut out = format!(
+        "! Generated by tools/bindgen from c/src and tools/bindgen/src/typed. Do not edit.\n\
+         !> {about}, of module feti_contact. A host uses feti_contact, not this module.\n!>\n\
+         !> feti_contact.h says more on each function. Everything counts from 1, sizes are taken from the arrays, and a failed call\n\
+         !> changes nothing. `stat` and `errmsg`: see feti_contact_base.\n\
+         module feti_contact_{name}\n  use, intrinsic :: iso_c_binding\n  \
+         use, intrinsic :: iso_fortran_env, only: int32, int64, real64\n  use feti_contact_base\n  \
+         use feti_contact_c, c_error_detail => feti_error_detail, c_phase => feti_phase\n  implicit none\n  private\n"
+    );
+    let mut generics: Vec<&str> = Vec::new();
+    for entry in &entries {
+        if !generics.contains(&entry.generic) {
+            generics.push(entry.generic);
+        }
+    }
+    let types = procedure::types(api, &entries);
+    let public: Vec<_> = generics.iter().copied().chain(types.iter().map(String::as_str)).collect();
+    for line in wrap("  public :: ", "  public :: ", &public.join(", "), LINE_WIDTH) {
+        let _ = writeln!(out, "{}", line.trim_end_matches(','));
+    }
+    let part = PARTS.iter().find(|(module, _)| *module == name).map_or("", |(_, text)| *text);
+    let (specification, procedures) = part.split_once("contains\n").unwrap_or(("", part));
+    out.push_str(specification);
+    for generic in &generics {
+        let of: Vec<_> = entries.iter().filter(|entry| entry.generic == *generic).collect();
+        if of[0].name != *generic {
+            write_interface(&mut out, api, generic, &of);
+        }
+    }
+    out.push_str("\ncontains\n");
+    for entry in entries.iter().filter(|entry| !entry.by_hand) {
+        for (specific, kind) in entry.specifics() {
+            out.push('\n');
+            out.push_str(&procedure::text(api, entry, &specific, kind));
+        }
+    }
+    if !procedures.is_empty() {
+        let _ = write!(out, "\n{procedures}");
+    }
+    out + "\nend module\n"
+}
+
+fn write_interface(out: &mut String, api: &Api, generic: &str, entries: &[&Entry]) {
+    out.push('\n');
+    let parts = PARTS.iter().find(|(module, _)| *module == entries[0].module).map_or("", |(_, text)| *text);
+    write_doc(out, "  ", &procedure::summary(api, entries[0].function));
+    out.push_str("  !>\n");
+    for entry in entries {
+        let dummies = match entry.by_hand {
+            true => statement(parts, entry.name).map(|line| between(&line).to_string()).unwrap_or_default(),
+            false => procedure::dummies(entry).join(", ") + ", stat, errmsg",
+        };
+        let call =
+            format!("call feti_{generic}({}): {}", dummies.trim_end_matches(", stat, errmsg"), entry.note);
+        for line in wrap("  !> ", "  !>   ", &call, LINE_WIDTH) {
+            let _ = writeln!(out, "{line}");
+        }
+    }
+    let arguments = rules::described(api, entries);
+    for paragraph in
+        arguments.iter().map(String::as_str).chain(entries.iter().flat_map(|e| e.paragraphs.iter().copied()))
+    {
+        out.push_str("  !>\n");
+        write_doc(out, "  ", paragraph);
+    }
+    let names: Vec<_> = entries.iter().flat_map(|entry| entry.specifics()).map(|(name, _)| name).collect();
+    let _ =
+        writeln!(out, "  interface {generic}\n    module procedure {}\n  end interface", names.join(", "));
+}
+
+/// The statement that begins a procedure of a source, `recursive subroutine name(...)`, continued lines joined.
+fn statement(text: &str, name: &str) -> Option<String> {
+    let at =
+        ["subroutine ", "function "].iter().find_map(|keyword| text.find(&format!("{keyword}{name}(")))?;
+    let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    let end = start + text[start..].find('\n')?;
+    Some(text[start..end].trim().trim_start_matches("recursive ").to_string())
+}
+
+fn between(statement: &str) -> &str {
+    statement.split_once('(').map_or("", |(_, rest)| rest.split(')').next().unwrap_or(""))
+}
+
+/// A subroutine or function as the host sees it: the statement and the declarations of its arguments, a line each.
+pub type Signature = Vec<String>;
+
+/// For every function of C the procedures that call it. `root` has the modules that are written by hand.
+pub fn signatures(api: &Api, root: &Path) -> BTreeMap<String, Vec<Signature>> {
     let mut found: BTreeMap<String, Vec<Signature>> = BTreeMap::new();
-    for (text, procedures) in texts.iter().zip(&modules) {
-        let generics = generics(text);
-        for procedure in procedures {
-            let inside = generics.get(&procedure.name).unwrap_or(&procedure.name);
-            let Some(outside) = faces.get(inside) else { continue };
-            let helpers = procedures.iter().filter(|helper| procedure.is_helped_by(helper));
-            for function in helpers.flat_map(|helper| &helper.calls).chain(&procedure.calls) {
-                found.entry(function.clone()).or_default().push(procedure.seen_as(outside, &modules));
+    let read = |module: &str| {
+        std::fs::read_to_string(root.join(format!("include/fortran/feti_contact_{module}.f90")))
+    };
+    let base = read("base").unwrap_or_default();
+    for (module, _, entries) in modules() {
+        let Ok(text) = read(module) else { continue };
+        for entry in known(api, entries) {
+            for (specific, kind) in entry.specifics() {
+                let function = match kind {
+                    Some(Kind::Int64) => entry.function.replace("_i32", "_i64"),
+                    _ => entry.function.to_string(),
+                };
+                let mut shown = signature(&text, &entry, &specific).unwrap_or_default();
+                let taken =
+                    shown.iter().find_map(|line| line.trim().strip_prefix("procedure(")?.split(')').next());
+                if let Some(interface) = taken.and_then(|name| abstract_interface(&base, name)) {
+                    shown.push(String::new());
+                    shown.extend(interface);
+                }
+                found.entry(function).or_default().push(shown);
             }
         }
     }
     found
 }
 
-impl Procedure {
-    fn is_helped_by(&self, other: &Procedure) -> bool {
-        self.helpers.iter().any(|line| line.contains(&format!("call {}(", other.name)))
-    }
-
-    fn seen_as(&self, outside: &str, modules: &[Vec<Procedure>]) -> Signature {
-        let mut lines = self.lines();
-        lines[0] = lines[0].replacen(&format!("{}(", self.name), &format!("{outside}("), 1);
-        for interface in modules.iter().flatten().filter(|other| self.takes(other)) {
-            lines.push(String::new());
-            lines.extend(interface.lines());
-        }
-        Signature { name: outside.to_string(), lines }
-    }
-
-    /// Whether an argument is a function of the host with the interface `other`.
-    fn takes(&self, other: &Procedure) -> bool {
-        self.declarations.iter().any(|line| line.starts_with(&format!("procedure({})", other.name)))
-    }
-
-    /// The statement and the declarations.
-    fn lines(&self) -> Vec<String> {
-        let declarations = self.declarations.iter().map(|line| format!("  {line}"));
-        std::iter::once(self.statement.clone()).chain(declarations).collect()
-    }
+/// The head of a procedure up to its first empty line, without what is local.
+fn signature(text: &str, entry: &Entry, specific: &str) -> Option<Signature> {
+    let statement = statement(text, specific)?;
+    let names: Vec<_> = between(&statement).split(", ").collect();
+    let at = text
+        .find(&format!("subroutine {specific}("))
+        .or_else(|| text.find(&format!("function {specific}(")))?;
+    let head =
+        text[at..].lines().skip(1).take_while(|line| !line.is_empty() && !line.trim().starts_with("end "));
+    let declared = head.filter(|line| {
+        let first =
+            line.split_once(":: ").map_or("", |(_, list)| list.split([',', '(', ' ']).next().unwrap_or(""));
+        names.contains(&first)
+    });
+    let outside = statement.replacen(&format!("{specific}("), &format!("{}(", entry.outside()), 1);
+    Some(std::iter::once(outside).chain(declared.map(|line| format!("  {}", line.trim()))).collect())
 }
 
-/// Statements without comments, continued lines joined; every procedure of the faces is recursive, which need not be said.
-pub fn statements(text: &str) -> Vec<String> {
-    let mut statements = Vec::new();
-    let mut open = String::new();
-    for line in text.lines().map(str::trim).filter(|line| !line.starts_with('!')) {
-        match line.strip_suffix('&') {
-            Some(part) => open.push_str(part),
-            None => {
-                let statement = std::mem::take(&mut open) + line;
-                statements.push(statement.trim_start_matches("recursive ").to_string());
-            }
-        }
-    }
-    statements
-}
-
-/// The pairs (a, b) of `a => b` in a statement.
-fn renamed(statement: &str) -> Vec<(String, String)> {
-    let list = statement.split_once("only:").map_or("", |(_, list)| list);
-    let pairs = list.split(',').filter_map(|item| item.split_once("=>"));
-    pairs.map(|(a, b)| (a.trim().to_string(), b.trim().to_string())).collect()
-}
-
-/// Specific name -> generic name.
-fn generics(text: &[String]) -> BTreeMap<String, String> {
-    let mut generics = BTreeMap::new();
-    let mut generic = "";
-    for line in text {
-        if let Some(name) = line.strip_prefix("interface ") {
-            generic = name.trim();
-        } else if let Some(list) = line.strip_prefix("module procedure ") {
-            generics.extend(list.split(',').map(|name| (name.trim().to_string(), generic.to_string())));
-        }
-    }
-    generics
-}
-
-fn procedures(text: &[String]) -> Vec<Procedure> {
-    let calls: Vec<(String, String)> = text.iter().flat_map(|line| renamed(line)).collect();
-    let mut procedures: Vec<Procedure> = Vec::new();
-    let mut open = false;
-    for line in text {
-        if line.starts_with("end subroutine") || line.starts_with("end function") {
-            open = false;
-        } else if let Some(procedure) = started(line) {
-            procedures.push(procedure);
-            open = true;
-        } else if let Some(procedure) = procedures.last_mut().filter(|_| open) {
-            procedure.read(line, &calls);
-        }
-    }
-    procedures
-}
-
-/// A procedure that begins with this statement.
-fn started(line: &str) -> Option<Procedure> {
-    let (head, rest) = line.split_once('(')?;
-    let mut words = head.split_whitespace().rev();
-    let (name, keyword) = (words.next()?, words.next()?);
-    if keyword != "subroutine" && keyword != "function" {
-        return None;
-    }
-    let dummies = rest.split(')').next()?.split(',').map(|name| name.trim().to_string()).collect();
-    Some(Procedure {
-        name: name.to_string(),
-        statement: line.to_string(),
-        dummies,
-        declarations: Vec::new(),
-        calls: BTreeSet::new(),
-        helpers: Vec::new(),
-    })
-}
-
-impl Procedure {
-    fn read(&mut self, line: &str, calls: &[(String, String)]) {
-        if let Some((attributes, names)) = line.split_once("::") {
-            let first: String =
-                names.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-            let marks = ["intent(", "optional", "procedure("];
-            let is_dummy = marks.iter().any(|mark| attributes.contains(mark));
-            if is_dummy && self.dummies.contains(&first) {
-                self.declarations.push(line.to_string());
-            }
-            return;
-        }
-        if line.contains("call ") {
-            self.helpers.push(line.to_string());
-        }
-        let called = calls.iter().filter(|(inside, _)| line.contains(&format!("{inside}(")));
-        self.calls.extend(called.map(|(_, function)| function.clone()).filter(|f| f.starts_with("feti_")));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_specific_procedure_is_seen_under_its_public_name() {
-        let module = "module feti_contact_bodies\n  use feti_contact_c, only: FETI_OK, &\n    c_add => feti_body_add\n\
-            interface body_add\n  module procedure add_int32, add_int64\nend interface\ncontains\n  !> Adds.\n\
-            recursive subroutine add_int32(p, n, stat)\n type(feti_problem), intent(in) :: p\n integer, intent(in) :: n\n\
-            integer, intent(out), optional :: stat\n integer :: local\n call help(p, n)\nend subroutine\n\
-            subroutine help(p, n)\n status = c_add(handle(p), n)\nend subroutine\n\
-            subroutine other(p)\n call nothing(p)\nend subroutine\nend module\n";
-        let face = "module feti_contact\n  use feti_contact_bodies, only: &\n    feti_body_add => body_add, feti_other => other\n";
-        let found = signatures(&[module.to_string(), face.to_string()]);
-        assert_eq!(found.keys().collect::<Vec<_>>(), ["feti_body_add"]);
-        let signature = &found["feti_body_add"][0];
-        assert_eq!(signature.name, "feti_body_add");
-        assert_eq!(signature.lines[0], "subroutine feti_body_add(p, n, stat)");
-        assert_eq!(signature.lines.len(), 4, "{signature:?}");
-    }
-
-    #[test]
-    fn functions_of_the_host_are_declared_and_their_interface_follows() {
-        let module = "module feti_contact_base\nabstract interface\n  integer function hear(now, data)\n    import :: c_int\n\
-            integer, intent(in) :: now\n class(*), intent(inout) :: data\n end function\n end interface\n\
-            use feti_contact_c, only: c_on => feti_on\ncontains\n subroutine on(p, heard)\n\
-            type(feti_problem), intent(in) :: p\n procedure(hear) :: heard\n status = c_on(p)\n end subroutine\nend module\n";
-        let face = "module feti_contact\n  use feti_contact_base, only: feti_on => on\n";
-        let found = signatures(&[module.to_string(), face.to_string()]);
-        let lines = &found["feti_on"][0].lines;
-        assert_eq!(
-            lines[2..5],
-            ["  procedure(hear) :: heard", "", "integer function hear(now, data)"],
-            "{lines:?}"
-        );
-        assert_eq!(lines.len(), 7, "{lines:?}");
-    }
+/// The interface of a function of the host.
+fn abstract_interface(text: &str, name: &str) -> Option<Signature> {
+    let start = text.find(&format!("integer function {name}("))?;
+    let lines = text[start..].lines().map(str::trim).take_while(|line| !line.starts_with("end "));
+    let lines = lines.filter(|line| !line.starts_with("import"));
+    Some(lines.enumerate().map(|(k, line)| format!("{}{line}", if k > 0 { "  " } else { "" })).collect())
 }
