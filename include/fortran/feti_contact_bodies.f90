@@ -7,7 +7,7 @@ module feti_contact_bodies
   use, intrinsic :: iso_c_binding
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
   use feti_contact_base
-  use feti_contact_c, c_error_detail => feti_error_detail, c_phase => feti_phase
+  use feti_contact_c, c_error_detail => feti_error_detail, c_option => feti_option, c_phase => feti_phase
   implicit none
   private
   public :: body_add, body_null_space, body_no_null_space, body_coordinates, body_coordinates_flags, body_load

@@ -7,7 +7,7 @@ module feti_contact_file
   use, intrinsic :: iso_c_binding
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
   use feti_contact_base
-  use feti_contact_c, c_error_detail => feti_error_detail, c_phase => feti_phase
+  use feti_contact_c, c_error_detail => feti_error_detail, c_option => feti_option, c_phase => feti_phase
   implicit none
   private
   public :: problem_write, problem_read

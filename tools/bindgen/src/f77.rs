@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::doc::Direction;
+use crate::f77_constants::positions;
 use crate::fortran::{continued, write_doc};
 use crate::model::{Api, Argument, Function, Type};
 
-const TABLE: &str = include_str!("f77.table");
+pub const TABLE: &str = include_str!("f77.table");
 
 /// A line of the table.
 struct Line<'a> {
@@ -20,7 +21,7 @@ struct Line<'a> {
 }
 
 fn lines() -> impl Iterator<Item = Line<'static>> {
-    let entries = TABLE.lines().filter(|line| !line.is_empty() && !line.starts_with(['#', ':']));
+    let entries = TABLE.lines().filter(|line| !line.is_empty() && !line.starts_with(['#', ':', '=']));
     entries.map(|entry| {
         let by_hand = entry.starts_with("- ");
         let (name, rest) = entry.trim_start_matches("- ").split_once('(').expect("a line has a statement");
@@ -29,14 +30,6 @@ fn lines() -> impl Iterator<Item = Line<'static>> {
         let (function, note) = entry[start..].split_once(' ').unwrap_or((&entry[start..], ""));
         Line { by_hand, name, arguments: arguments.split(", ").collect(), function, note }
     })
-}
-
-/// The members of a struct that fill the two arrays of the host.
-fn positions(structure: &str) -> [Vec<&'static str>; 2] {
-    let named = TABLE.lines().filter_map(|line| line.strip_prefix(": ")?.split_once(' '));
-    let (_, members) = named.clone().find(|(name, _)| *name == structure).expect("positions of the struct");
-    let (integers, reals) = members.split_once(" / ").expect("integers / reals");
-    [integers, reals].map(|list| list.split(' ').collect())
 }
 
 /// For every function of C the statements that call it, `CALL FTBADD(IP, N, IBODY, IERR)`.
@@ -267,7 +260,7 @@ impl Subroutine {
         for (name, member) in tokens.filter_map(|token| token.split_once('=')) {
             let name = name.to_lowercase();
             let found = format!("found%{member}");
-            let (attributes, value) = match field(api, record, member) {
+            let (attributes, value) = match field(api, record, member).unwrap_or(&Type::Void) {
                 Type::I32 => ("integer", format!("int({found})")),
                 Type::I64 if name.starts_with(|c| ('i'..='n').contains(&c)) => {
                     ("integer", format!("clipped({found})"))
@@ -289,18 +282,19 @@ impl Subroutine {
         if !argument.is_nullable() {
             self.after.push("if (ierr < FETI_OK) return".to_string());
         }
-        let value = |member: &&str, kind: Type| {
+        let value = |member: &str, kind: Type| {
             let found = format!("found%{}", member.replace("+1", " + 1"));
             match (field(api, record, plain(member)), kind) {
-                (Type::I32, Type::I64) => format!("int({found}, c_int64_t)"),
-                (Type::I64, Type::F64) => format!("real({found}, c_double)"),
+                (Some(Type::I32), Type::I64) => format!("int({found}, c_int64_t)"),
+                (Some(Type::I64), Type::F64) => format!("real({found}, c_double)"),
                 _ => found,
             }
         };
-        for (k, (members, kind)) in positions(record).iter().zip([Type::I64, Type::F64]).enumerate() {
+        for (k, (positions, kind)) in positions(record).iter().zip([Type::I64, Type::F64]).enumerate() {
             let (give, attributes) = [("give", "integer"), ("give_reals", "real(c_double)")][k];
             let (size, array) = (&names[2 * k], &names[2 * k + 1]);
-            let values: Vec<_> = members.iter().map(|member| value(member, kind.clone())).collect();
+            let values: Vec<_> =
+                positions.members.iter().map(|(_, member)| value(member, kind.clone())).collect();
             self.declare("integer, intent(in)", size);
             self.declare(&format!("{attributes}, intent(inout)"), &format!("{array}(*)"));
             self.after.push(format!("call {give}([{}], {size}, {array})", values.join(", ")));
@@ -362,7 +356,7 @@ fn constant(api: &Api, argument: &Argument) -> &'static str {
     }
 }
 
-fn field<'a>(api: &'a Api, record: &str, member: &str) -> &'a Type {
-    let fields = api.find_struct(record).and_then(|found| found.fields.as_deref()).unwrap_or(&[]);
-    &fields.iter().find(|field| field.name == member).expect("a member of the struct").ty
+pub fn field<'a>(api: &'a Api, record: &str, member: &str) -> Option<&'a Type> {
+    let fields = api.find_struct(record)?.fields.as_deref()?;
+    Some(&fields.iter().find(|field| field.name == member)?.ty)
 }

@@ -21,6 +21,7 @@ mod check;
 mod dictionary;
 mod doc;
 mod f77;
+mod f77_constants;
 mod faults;
 mod fortran;
 mod man;
@@ -39,6 +40,7 @@ mod typed;
 
 const HEADER: &str = "include/feti_contact.h";
 const FORTRAN: &str = "include/fortran/feti_contact_c.f90";
+const INCLUDE77: &str = "include/fortran/feti_contact_f77.inc";
 const FORTRAN77: &str = "include/fortran/feti_contact_f77_calls.f90";
 
 struct Options {
@@ -119,8 +121,12 @@ fn run(options: &Options, sections: &[order::Section]) -> Result<(), String> {
 /// (path, text) of what the given (file name, text) pairs make, the header and the module of its interfaces first.
 fn generate(sources: &[(String, String)], version: [u32; 3]) -> Result<Vec<(String, String)>, String> {
     let api = checked(sources, version)?;
-    let texts =
-        [(HEADER, c_header::print(&api)), (FORTRAN, fortran::print(&api)), (FORTRAN77, f77::print(&api))];
+    let texts = [
+        (HEADER, c_header::print(&api)),
+        (FORTRAN, fortran::print(&api)),
+        (FORTRAN77, f77::print(&api)),
+        (INCLUDE77, f77_constants::print(&api)),
+    ];
     let texts = texts.map(|(path, text)| (path.to_string(), text));
     Ok(texts.into_iter().chain(typed::print(&api)).collect())
 }

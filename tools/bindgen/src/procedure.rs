@@ -209,10 +209,12 @@ impl Parts {
         let integer = kind.map_or("int32", Kind::name);
         let attributes = match argument.ty.target() {
             None if argument.ty == Type::I32 => "integer(c_int32_t), intent(in)".to_string(),
+            None if argument.ty == Type::F64 => "real(real64), intent(in)".to_string(),
             None => "integer, intent(in)".to_string(),
             Some(ty) if api.is_opaque(ty) => "type(feti_problem), intent(in)".to_string(),
             Some(Type::Named(record)) => format!("type({record}), intent({intent}){optional}{target}"),
             Some(Type::Char) => "character(len=*), intent(in)".to_string(),
+            Some(Type::F64) if argument.is_scalar() => format!("real(real64), intent({intent})"),
             Some(Type::F64) if dummy.is_pointer => {
                 "real(real64), pointer, contiguous, intent(in)".to_string()
             }

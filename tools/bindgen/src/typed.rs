@@ -15,9 +15,10 @@ use crate::rules;
 
 const TABLE: &str = include_str!("typed/table");
 const WHOLE: &str = include_str!("typed/whole.f90");
-const PARTS: [(&str, &str); 5] = [
+const PARTS: [(&str, &str); 6] = [
     ("bodies", include_str!("typed/bodies.f90")),
     ("elements", include_str!("typed/elements.f90")),
+    ("options", include_str!("typed/options.f90")),
     ("results", include_str!("typed/results.f90")),
     ("states", include_str!("typed/states.f90")),
     ("stiffness", include_str!("typed/stiffness.f90")),
@@ -39,6 +40,8 @@ pub struct Entry {
     pub checks: Vec<(&'static str, &'static str, &'static str)>,
     /// (argument of C, value)
     pub given: Vec<(&'static str, &'static str)>,
+    /// What describes a generic in place of the summary and the arguments of C.
+    described: Option<&'static str>,
     paragraphs: Vec<&'static str>,
 }
 
@@ -92,6 +95,7 @@ fn modules() -> Vec<(&'static str, &'static str, Vec<Entry>)> {
                 entry.checks.push((k, condition, text));
             }
             (Some("  = "), Some(entry)) => entry.given.extend(line[4..].split_once(' ')),
+            (Some("  < "), Some(entry)) => entry.described = Some(&line[4..]),
             (Some("  > "), Some(entry)) => entry.paragraphs.push(&line[4..]),
             _ => entries.push(Entry::read(module, line)),
         }
@@ -164,7 +168,7 @@ fn module(api: &Api, name: &str, about: &str, entries: Vec<Entry>) -> String {
          !> changes nothing. `stat` and `errmsg`: see feti_contact_base.\n\
          module feti_contact_{name}\n  use, intrinsic :: iso_c_binding\n  \
          use, intrinsic :: iso_fortran_env, only: int32, int64, real64\n  use feti_contact_base\n  \
-         use feti_contact_c, c_error_detail => feti_error_detail, c_phase => feti_phase\n  implicit none\n  private\n"
+         use feti_contact_c, c_error_detail => feti_error_detail, c_option => feti_option, c_phase => feti_phase\n  implicit none\n  private\n"
     );
     let mut generics: Vec<&str> = Vec::new();
     for entry in &entries {
@@ -202,20 +206,29 @@ fn module(api: &Api, name: &str, about: &str, entries: Vec<Entry>) -> String {
 fn write_interface(out: &mut String, api: &Api, generic: &str, entries: &[&Entry]) {
     out.push('\n');
     let parts = PARTS.iter().find(|(module, _)| *module == entries[0].module).map_or("", |(_, text)| *text);
-    write_doc(out, "  ", &procedure::summary(api, entries[0].function));
+    let described = entries[0].described;
+    write_doc(
+        out,
+        "  ",
+        &described.map_or_else(|| procedure::summary(api, entries[0].function), str::to_string),
+    );
     out.push_str("  !>\n");
     for entry in entries {
         let dummies = match entry.by_hand {
             true => statement(parts, entry.name).map(|line| between(&line).to_string()).unwrap_or_default(),
             false => procedure::dummies(entry).join(", ") + ", stat, errmsg",
         };
-        let call =
-            format!("call feti_{generic}({}): {}", dummies.trim_end_matches(", stat, errmsg"), entry.note);
+        let call = format!(
+            "call {}({}): {}",
+            entry.outside(),
+            dummies.trim_end_matches(", stat, errmsg"),
+            entry.note
+        );
         for line in wrap("  !> ", "  !>   ", &call, LINE_WIDTH) {
             let _ = writeln!(out, "{line}");
         }
     }
-    let arguments = rules::described(api, entries);
+    let arguments = rules::described(api, entries).filter(|_| described.is_none());
     for paragraph in
         arguments.iter().map(String::as_str).chain(entries.iter().flat_map(|e| e.paragraphs.iter().copied()))
     {
