@@ -4,7 +4,6 @@
 !> Writes all input of the problem to one file, for example for a bug report. C: feti_problem_write.
 recursive subroutine ftwrit(ip, path, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   character(len=*), intent(in) :: path
   integer, intent(out) :: ierr
@@ -15,7 +14,6 @@ end subroutine
 !> Reads a file of feti_problem_write into an empty problem. C: feti_problem_read.
 recursive subroutine ftread(ip, path, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   character(len=*), intent(in) :: path
   integer, intent(out) :: ierr
@@ -26,7 +24,6 @@ end subroutine
 !> Text of the last error of the problem. C: feti_problem_error.
 recursive subroutine ftperr(ip, text, l, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   character(len=*), intent(inout) :: text
   integer, intent(inout) :: l
@@ -39,10 +36,29 @@ recursive subroutine ftperr(ip, text, l, ierr)
   if (ierr == FETI_OK) text = f_text(c_loc(buffer))
 end subroutine
 
+!> Details of the last error in the calling thread: function, argument, place, value and limit. C:
+!> feti_last_error_detail.
+recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ni, nr
+  integer, intent(inout) :: idet(*)
+  real(c_double), intent(inout) :: rdet(*)
+  character(len=*), intent(inout) :: name
+  integer, intent(out) :: ierr
+  type(feti_error_detail), target :: found
+
+  found%struct_size = storage_size(found, c_int64_t) / 8
+  ierr = told(feti_last_error_detail(found))
+  if (ierr < FETI_OK) return
+  call give([int(found%status, c_int64_t), int(found%argument, c_int64_t), found%body + 1, found%component + 1, &
+    found%dof + 1, found%row + 1, found%entry + 1, found%element + 1, found%node + 1], ni, idet)
+  call give_reals([found%value, found%limit], nr, rdet)
+  name = f_text(c_loc(found%function))
+end subroutine
+
 !> Sets an option that is a number. C: feti_set_f64.
 recursive subroutine ftsetd(ip, name, d, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   character(len=*), intent(in) :: name
   real(c_double), intent(in) :: d
@@ -54,7 +70,6 @@ end subroutine
 !> Sets an option that is an integer. C: feti_set_i64.
 recursive subroutine ftseti(ip, name, i, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, i
   character(len=*), intent(in) :: name
   integer, intent(out) :: ierr
@@ -65,7 +80,6 @@ end subroutine
 !> Sets an option that is a text. C: feti_set_str.
 recursive subroutine ftsetc(ip, name, text, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   character(len=*), intent(in) :: name, text
   integer, intent(out) :: ierr
@@ -76,7 +90,6 @@ end subroutine
 !> Sets several options with one text, such as "tolerance=1e-8 threads=4". C: feti_set_text.
 recursive subroutine ftsett(ip, text, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   character(len=*), intent(in) :: text
   integer, intent(out) :: ierr
@@ -87,7 +100,6 @@ end subroutine
 !> Reads an option that is a number. C: feti_get_f64.
 recursive subroutine ftgetd(ip, name, d, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   character(len=*), intent(in) :: name
   real(c_double), intent(inout) :: d
@@ -99,7 +111,6 @@ end subroutine
 !> Reads an option that is an integer. C: feti_get_i64.
 recursive subroutine ftgeti(ip, name, i, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   character(len=*), intent(in) :: name
   integer, intent(inout) :: i
@@ -113,7 +124,6 @@ end subroutine
 !> Reads an option that is a text. C: feti_get_str.
 recursive subroutine ftgetc(ip, name, text, l, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   character(len=*), intent(in) :: name
   character(len=*), intent(inout) :: text
@@ -131,7 +141,6 @@ end subroutine
 !> Describes an option: name, text, type, default and range. C: feti_option_at.
 recursive subroutine ftopta(k, name, doc, ityp, rmin, rmax, dflt, idflt, cdflt, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: k
   character(len=*), intent(inout) :: name, doc, cdflt
   integer, intent(inout) :: ityp, idflt
@@ -155,7 +164,6 @@ end subroutine
 !> Adds a body with `n` unknowns. C: feti_body_add.
 recursive subroutine ftbadd(ip, n, ibody, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, n
   integer, intent(inout) :: ibody
   integer, intent(out) :: ierr
@@ -168,7 +176,6 @@ end subroutine
 !> Gives the stiffness matrix K of a body by rows. C: feti_body_stiffness.
 recursive subroutine ftbstf(ip, ibody, n, iptr, icol, val, istor, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n, iptr(*), icol(*), istor
   real(c_double), intent(in) :: val(*)
   integer, intent(out) :: ierr
@@ -181,7 +188,6 @@ end subroutine
 !> feti_body_stiffness_dense.
 recursive subroutine ftbdns(ip, ibody, n, a, lda, istor, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n, lda, istor
   real(c_double), intent(in) :: a(*)
   integer, intent(out) :: ierr
@@ -192,7 +198,6 @@ end subroutine
 !> Gives the stiffness matrix K of a body by rows with a separate diagonal. C: feti_body_stiffness_split.
 recursive subroutine ftbspl(ip, ibody, n, diag, iptr, icol, val, istor, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n, iptr(*), icol(*), istor
   real(c_double), intent(in) :: diag(*), val(*)
   integer, intent(out) :: ierr
@@ -205,7 +210,6 @@ end subroutine
 !> feti_body_values.
 recursive subroutine ftbval(ip, ibody, nnz, val, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, nnz
   real(c_double), intent(in) :: val(*)
   integer, intent(out) :: ierr
@@ -217,7 +221,6 @@ end subroutine
 !> feti_body_values_split.
 recursive subroutine ftbvsp(ip, ibody, n, diag, nnz, val, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n, nnz
   real(c_double), intent(in) :: diag(*), val(*)
   integer, intent(out) :: ierr
@@ -228,7 +231,6 @@ end subroutine
 !> Gives new values for a dense stiffness matrix. C: feti_body_values_dense.
 recursive subroutine ftbvdn(ip, ibody, n, a, lda, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n, lda
   real(c_double), intent(in) :: a(*)
   integer, intent(out) :: ierr
@@ -239,7 +241,6 @@ end subroutine
 !> Gives the host's own numbers of the unknowns of a body, with 32-bit integers. C: feti_body_numbering.
 recursive subroutine ftbnum(ip, ibody, n, inum, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n, inum(*)
   integer, intent(out) :: ierr
 
@@ -249,7 +250,6 @@ end subroutine
 !> Reads the connected part of every unknown of a body. C: feti_body_components.
 recursive subroutine ftbcmp(ip, ibody, n, icomp, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n
   integer, intent(inout) :: icomp(*)
   integer, intent(out) :: ierr
@@ -266,7 +266,6 @@ end subroutine
 !> feti_body_null_space.
 recursive subroutine ftbnul(ip, ibody, nr, n, r, ldr, iflag, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, nr, n, ldr, iflag
   real(c_double), intent(in), target :: r(*)
   integer, intent(out) :: ierr
@@ -278,7 +277,6 @@ end subroutine
 !> Says that a body has no null space: its supports hold it, K is not singular. C: feti_body_no_null_space.
 recursive subroutine ftbreg(ip, ibody, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody
   integer, intent(out) :: ierr
 
@@ -288,7 +286,6 @@ end subroutine
 !> Reads the null space that the library uses for a body. C: feti_body_null_space_get.
 recursive subroutine ftbnug(ip, ibody, n, nr, r, ldr, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n, ldr
   integer, intent(inout) :: nr
   real(c_double), intent(inout), target :: r(*)
@@ -304,7 +301,6 @@ end subroutine
 !> space, or as motions that K resists weakly. C: feti_body_coordinates_flags.
 recursive subroutine ftbxyf(ip, ibody, iflag, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, iflag
   integer, intent(out) :: ierr
 
@@ -314,7 +310,6 @@ end subroutine
 !> Gives the load of a body. C: feti_body_load.
 recursive subroutine ftblod(ip, ibody, n, f, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n
   real(c_double), intent(in) :: f(*)
   integer, intent(out) :: ierr
@@ -325,7 +320,6 @@ end subroutine
 !> Reads the fixing unknowns of a body: with them fixed, K has full rank. C: feti_body_fixing.
 recursive subroutine ftbfix(ip, ibody, nr, idof, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, nr
   integer, intent(inout) :: idof(*)
   integer, intent(out) :: ierr
@@ -341,7 +335,6 @@ end subroutine
 !> Applies the generalised inverse of a body, `Y = K+ X`. C: feti_body_kplus.
 recursive subroutine ftbkpl(ip, ibody, n, nrhs, x, ldx, y, ldy, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n, nrhs, ldx, ldy
   real(c_double), intent(in) :: x(*)
   real(c_double), intent(inout) :: y(*)
@@ -353,7 +346,6 @@ end subroutine
 !> Reads what is known about a body: its matrix, its null space, its factor and its dual operator. C: feti_body_info.
 recursive subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, ni, nr
   integer, intent(inout) :: ifact(*)
   real(c_double), intent(inout) :: rfact(*)
@@ -373,7 +365,6 @@ end subroutine
 !> Gives the connectivity of the elements of a body: the first step of giving K by elements. C: feti_body_mesh.
 recursive subroutine ftbmsh(ip, ibody, ne, iptr, idof, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, ne, iptr(*), idof(*)
   integer, intent(out) :: ierr
 
@@ -383,7 +374,6 @@ end subroutine
 !> Adds the stiffness matrix of one element; call it from the host's assembly loop. C: feti_body_element.
 recursive subroutine ftbelm(ip, ibody, ie, n, ae, lda, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, ie, n, lda
   real(c_double), intent(in) :: ae(*)
   integer, intent(out) :: ierr
@@ -394,7 +384,6 @@ end subroutine
 !> Adds the stiffness matrices of a block of elements, one after the other. C: feti_body_elements.
 recursive subroutine ftbels(ip, ibody, ifirst, ne, ae, istor, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, ifirst, ne, istor
   real(c_double), intent(in) :: ae(*)
   integer, intent(out) :: ierr
@@ -405,7 +394,6 @@ end subroutine
 !> Returns how many numbers feti_body_elements expects for a block of elements. C: feti_body_elements_size.
 recursive subroutine ftbesz(ip, ibody, ifirst, ne, istor, nnz, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, ifirst, ne, istor
   integer, intent(inout) :: nnz
   integer, intent(out) :: ierr
@@ -419,7 +407,6 @@ end subroutine
 !> C: feti_body_held_forces.
 recursive subroutine ftbhld(ip, ibody, nh, r, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, nh
   real(c_double), intent(inout) :: r(*)
   integer, intent(out) :: ierr
@@ -430,7 +417,6 @@ end subroutine
 !> Reads the piece of every unknown of a body, for pictures and for choosing option `pieces`. C: feti_body_pieces.
 recursive subroutine ftbpcs(ip, ibody, n, ipiece, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n
   integer, intent(inout) :: ipiece(*)
   integer, intent(out) :: ierr
@@ -446,7 +432,6 @@ end subroutine
 !> Adds rows of `B u <= c` or `H u = h`. C: feti_rows_add.
 recursive subroutine ftrows(ip, kind, m, iptr, ibody, idof, val, rhs, ifirst, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, kind, m, iptr(*), idof(*)
   integer, intent(in), target :: ibody(*)
   real(c_double), intent(in) :: val(*)
@@ -463,7 +448,6 @@ end subroutine
 !> Adds rows of `B u <= c` or `H u = h`. IDOF counts through all bodies. C: feti_rows_add.
 recursive subroutine ftrowc(ip, kind, m, iptr, idof, val, rhs, ifirst, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, kind, m, iptr(*), idof(*)
   real(c_double), intent(in) :: val(*)
   real(c_double), intent(in), target :: rhs(*)
@@ -479,7 +463,6 @@ end subroutine
 !> Replaces right-hand sides: c of `B u <= c` or h of `H u = h`. C: feti_rows_rhs.
 recursive subroutine ftrrhs(ip, kind, ifirst, m, rhs, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, kind, ifirst, m
   real(c_double), intent(in) :: rhs(*)
   integer, intent(out) :: ierr
@@ -490,7 +473,6 @@ end subroutine
 !> Makes rows compliant: each becomes a spring, `B u - c <= lambda/k` or `H u - h = mu/k`. C: feti_rows_compliance.
 recursive subroutine ftrcmp(ip, kind, ifirst, m, cinv, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, kind, ifirst, m
   real(c_double), intent(in) :: cinv(*)
   integer, intent(out) :: ierr
@@ -501,7 +483,6 @@ end subroutine
 !> Removes all rows of a kind. C: feti_rows_clear.
 recursive subroutine ftrclr(ip, kind, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, kind
   integer, intent(out) :: ierr
 
@@ -511,7 +492,6 @@ end subroutine
 !> Adds nodes with friction. C: feti_friction_add.
 recursive subroutine ftfadd(ip, nd, idim, nrow, iptr, ibody, idof, val, coef, bnd, ifirst, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, nd, idim, nrow(*), iptr(*), idof(*)
   integer, intent(in), target :: ibody(*)
   real(c_double), intent(in) :: val(*)
@@ -528,7 +508,6 @@ end subroutine
 !> Adds nodes with friction. IDOF counts through all bodies. C: feti_friction_add.
 recursive subroutine ftfadc(ip, nd, idim, nrow, iptr, idof, val, coef, bnd, ifirst, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, nd, idim, nrow(*), iptr(*), idof(*)
   real(c_double), intent(in) :: val(*)
   real(c_double), intent(in), target :: coef(*), bnd(*)
@@ -544,7 +523,6 @@ end subroutine
 !> Replaces the friction law of nodes: coefficients, bounds, or both. The coefficients. C: feti_friction_law.
 recursive subroutine ftfcoe(ip, ifirst, nd, coef, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ifirst, nd
   real(c_double), intent(in), target :: coef(*)
   integer, intent(out) :: ierr
@@ -555,7 +533,6 @@ end subroutine
 !> Replaces the friction law of nodes: coefficients, bounds, or both. The bounds. C: feti_friction_law.
 recursive subroutine ftfbnd(ip, ifirst, nd, bnd, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ifirst, nd
   real(c_double), intent(in), target :: bnd(*)
   integer, intent(out) :: ierr
@@ -567,7 +544,6 @@ end subroutine
 !> Makes sticking nodes elastic: `s = T u - s_old - C_t lambda_t` with C_t = 1/k_t. C: feti_friction_compliance.
 recursive subroutine ftfcmp(ip, ifirst, nd, ct, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ifirst, nd
   real(c_double), intent(in) :: ct(*)
   integer, intent(out) :: ierr
@@ -579,7 +555,6 @@ end subroutine
 !> feti_friction_reference.
 recursive subroutine ftfref(ip, ifirst, nd, idim, sold, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ifirst, nd, idim
   real(c_double), intent(in) :: sold(*)
   integer, intent(out) :: ierr
@@ -591,7 +566,6 @@ end subroutine
 !> feti_friction_commit.
 recursive subroutine ftfcom(ip, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   integer, intent(out) :: ierr
 
@@ -602,7 +576,6 @@ end subroutine
 !> feti_friction_counts.
 recursive subroutine ftfcnt(ip, nd, idim, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   integer, intent(inout) :: nd, idim
   integer, intent(out) :: ierr
@@ -618,7 +591,6 @@ end subroutine
 !> feti_friction_slips.
 recursive subroutine ftfslp(ip, nd, idim, slip, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, nd, idim
   real(c_double), intent(inout) :: slip(*)
   integer, intent(out) :: ierr
@@ -630,7 +602,6 @@ end subroutine
 !> feti_friction_states.
 recursive subroutine ftfsta(ip, nd, istate, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, nd
   integer, intent(inout) :: istate(*)
   integer, intent(out) :: ierr
@@ -646,7 +617,6 @@ end subroutine
 !> Removes all nodes with friction; their contact rows stay. C: feti_friction_clear.
 recursive subroutine ftfclr(ip, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   integer, intent(out) :: ierr
 
@@ -656,7 +626,6 @@ end subroutine
 !> Prepares the solve: null spaces, factors of the bodies, the dual operator. C: feti_setup.
 recursive subroutine ftstup(ip, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   integer, intent(out) :: ierr
 
@@ -666,7 +635,6 @@ end subroutine
 !> Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`. C: feti_solve.
 recursive subroutine ftsolv(ip, ni, info, nr, rinfo, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ni, nr
   integer, intent(inout) :: info(*)
   real(c_double), intent(inout) :: rinfo(*)
@@ -690,7 +658,6 @@ end subroutine
 !> C: feti_check.
 recursive subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, n, m, me, ni, nr
   real(c_double), intent(in) :: u(*), rlam(*), rmu(*)
   integer, intent(inout) :: icert(*)
@@ -713,7 +680,6 @@ end subroutine
 !> feti_check_friction.
 recursive subroutine ftchkf(ip, n, u, m, rlam, me, rmu, nd, idim, rlt, ni, icert, nr, rcert, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, n, m, me, nd, idim, ni, nr
   real(c_double), intent(in) :: u(*), rlam(*), rmu(*), rlt(*)
   integer, intent(inout) :: icert(*)
@@ -736,7 +702,6 @@ end subroutine
 !> Reads the displacement of a body. C: feti_displacement.
 recursive subroutine ftdisp(ip, ibody, n, u, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n
   real(c_double), intent(inout) :: u(*)
   integer, intent(out) :: ierr
@@ -748,7 +713,6 @@ end subroutine
 !> feti_reaction.
 recursive subroutine ftreac(ip, kind, ibody, n, r, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, kind, ibody, n
   real(c_double), intent(inout) :: r(*)
   integer, intent(out) :: ierr
@@ -760,7 +724,6 @@ end subroutine
 !> feti_amplitudes.
 recursive subroutine ftampl(ip, ibody, nr, alpha, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, nr
   real(c_double), intent(inout) :: alpha(*)
   integer, intent(out) :: ierr
@@ -772,7 +735,6 @@ end subroutine
 !> node. C: feti_multipliers.
 recursive subroutine ftmult(ip, kind, m, rlam, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, kind, m
   real(c_double), intent(inout) :: rlam(*)
   integer, intent(out) :: ierr
@@ -784,7 +746,6 @@ end subroutine
 !> feti_gaps.
 recursive subroutine ftgaps(ip, m, gap, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, m
   real(c_double), intent(inout) :: gap(*)
   integer, intent(out) :: ierr
@@ -795,7 +756,6 @@ end subroutine
 !> Reads the state of the inequality rows, decided by what the certificate regards as zero at each row. C: feti_active.
 recursive subroutine ftactv(ip, m, istate, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, m
   integer, intent(inout) :: istate(*)
   integer, intent(out) :: ierr
@@ -811,7 +771,6 @@ end subroutine
 !> Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`. C: feti_dual_apply.
 recursive subroutine ftdapp(ip, m, x, y, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, m
   real(c_double), intent(in) :: x(*)
   real(c_double), intent(inout) :: y(*)
@@ -823,7 +782,6 @@ end subroutine
 !> Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`. C: feti_dual_rhs.
 recursive subroutine ftdrhs(ip, m, d, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, m
   real(c_double), intent(inout) :: d(*)
   integer, intent(out) :: ierr
@@ -834,7 +792,6 @@ end subroutine
 !> Number of phases of a setup and a solve. C: feti_phase_count.
 recursive subroutine ftphsn(ip, n, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   integer, intent(inout) :: n
   integer, intent(out) :: ierr
@@ -848,7 +805,6 @@ end subroutine
 !> preconditioner, dual solve, recovery, in this order. C: feti_phase_at.
 recursive subroutine ftphas(ip, k, name, secs, bytes, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, k
   character(len=*), intent(inout) :: name
   real(c_double), intent(inout) :: secs, bytes
@@ -867,7 +823,6 @@ end subroutine
 !> the function of the host. C: feti_on_progress.
 recursive subroutine ftofpr(ip, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   integer, intent(out) :: ierr
 
@@ -878,7 +833,6 @@ end subroutine
 !> feti_on_log.
 recursive subroutine ftoflg(ip, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   integer, intent(out) :: ierr
 
@@ -888,7 +842,6 @@ end subroutine
 !> Cancels the setup or the solve that is running on the problem. C: feti_cancel.
 recursive subroutine ftcanc(ip, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   integer, intent(out) :: ierr
 
@@ -898,7 +851,6 @@ end subroutine
 !> Gives start values for the next solve. C: feti_start_from.
 recursive subroutine ftstrt(ip, kind, m, rlam, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, kind, m
   real(c_double), intent(in) :: rlam(*)
   integer, intent(out) :: ierr
@@ -909,7 +861,6 @@ end subroutine
 !> Saves loads, rows, friction, multipliers and the contact state under a number. C: feti_state_save.
 recursive subroutine ftssav(ip, id, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip
   integer, intent(inout) :: id
   integer, intent(out) :: ierr
@@ -922,7 +873,6 @@ end subroutine
 !> Goes back to a saved state, for example after a rejected load step. C: feti_state_restore.
 recursive subroutine ftsres(ip, id, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, id
   integer, intent(out) :: ierr
 
@@ -932,7 +882,6 @@ end subroutine
 !> Drops a saved state. C: feti_state_drop.
 recursive subroutine ftsdrp(ip, id, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, id
   integer, intent(out) :: ierr
 
@@ -942,7 +891,6 @@ end subroutine
 !> Reads what the last solve, or the last failed setup, found out about the problem. C: feti_diagnosis.
 recursive subroutine ftdiag(ip, ni, idiag, nr, rdiag, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ni, nr
   integer, intent(inout) :: idiag(*)
   real(c_double), intent(inout) :: rdiag(*)
@@ -962,7 +910,6 @@ end subroutine
 !> rows. C: feti_diagnosis_rows.
 recursive subroutine ftdrow(ip, kind, icap, n, irow, w, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, kind, icap
   integer, intent(inout) :: n, irow(*)
   real(c_double), intent(inout), target :: w(*)
@@ -982,7 +929,6 @@ end subroutine
 !> feti_diagnosis_dependent.
 recursive subroutine ftddep(ip, icap, n, irow, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, icap
   integer, intent(inout) :: n, irow(*)
   integer, intent(out) :: ierr
@@ -999,7 +945,6 @@ end subroutine
 !> Lists the bodies that no row touched in the last solve, or in the last failed setup. C: feti_diagnosis_untouched.
 recursive subroutine ftdunt(ip, icap, n, ibody, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, icap
   integer, intent(inout) :: n, ibody(*)
   integer, intent(out) :: ierr
@@ -1017,7 +962,6 @@ end subroutine
 !> feti_diagnosis_undetermined.
 recursive subroutine ftdund(ip, k, ibody, rmotn, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, k
   integer, intent(inout) :: ibody
   real(c_double), intent(inout), target :: rmotn(6)
@@ -1032,7 +976,6 @@ end subroutine
 !> feti_diagnosis_undetermined_motion.
 recursive subroutine ftdunm(ip, k, ibody, n, v, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, k, ibody, n
   real(c_double), intent(inout) :: v(*)
   integer, intent(out) :: ierr
@@ -1043,7 +986,6 @@ end subroutine
 !> Reads the motion of every unknown of a body in the rigid body motion that escapes. C: feti_diagnosis_motion.
 recursive subroutine ftdmot(ip, ibody, n, v, ierr)
   use feti_contact_f77_base
-  implicit none
   integer, intent(in) :: ip, ibody, n
   real(c_double), intent(inout) :: v(*)
   integer, intent(out) :: ierr

@@ -83,28 +83,6 @@ recursive subroutine fterr(ierr, text)
   end if
 end subroutine
 
-!> Details of the last error of this thread: idet(ni) and rdet(nr), positions FTDSTA to FTDNOD, FTDVAL, FTDLIM; name: the
-!> C function, to whose arguments idet(FTDARG) refers. Numbers count from 1; 0: does not apply.
-recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
-  use feti_contact_f77_base
-  implicit none
-  integer, intent(in) :: ni, nr
-  integer, intent(inout) :: idet(*)
-  real(c_double), intent(inout) :: rdet(*)
-  character(len=*), intent(inout) :: name
-  integer, intent(out) :: ierr
-  type(feti_error_detail), target :: found
-
-  found%struct_size = storage_size(found, c_int64_t) / 8
-  ierr = told(feti_last_error_detail(found))
-  if (ierr /= FETI_OK) return
-  call give([int(found%status, c_int64_t), int(found%argument, c_int64_t), found%body + 1, found%component + 1, &
-    found%dof + 1, found%row + 1, found%entry + 1, found%element + 1, found%node + 1], &
-    ni, idet)
-  call give_reals([found%value, found%limit], nr, rdet)
-  name = f_text(c_loc(found%function))
-end subroutine
-
 !> Name of a status, such as FETI_LOAD_NOT_HELD for FTELNH.
 recursive subroutine ftsnam(istat, text)
   use feti_contact_f77_base

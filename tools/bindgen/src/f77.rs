@@ -109,11 +109,12 @@ impl Subroutine {
                     made.members(api, record, [token].into_iter().chain(given.by_ref()));
                 }
                 Some(Type::Named(record)) => {
-                    let names = std::iter::once(name)
-                        .chain(given.by_ref().map(str::to_lowercase))
-                        .collect::<Vec<_>>();
+                    let (text, names): (Vec<_>, Vec<_>) =
+                        given.by_ref().partition(|token| token.contains('='));
+                    let names: Vec<_> =
+                        [name].into_iter().chain(names.iter().map(|name| name.to_lowercase())).collect();
                     made.dummies.extend_from_slice(&names[1..]);
-                    made.record(api, argument, record, &names);
+                    made.record(api, argument, record, &names, text.first().copied());
                 }
                 Some(Type::Char) if argument.direction() == Direction::In => {
                     made.pass("character(len=*), intent(in)", &name, format!("c_text({name})"));
@@ -276,8 +277,9 @@ impl Subroutine {
     }
 
     /// A struct as an array of integers and one of reals, each with its size before it.
-    fn record(&mut self, api: &Api, argument: &Argument, record: &str, names: &[String]) {
-        self.result(record, if argument.is_nullable() { ", target" } else { "" });
+    /// `text`: an array of characters in it, NAME=MEMBER.
+    fn record(&mut self, api: &Api, argument: &Argument, record: &str, names: &[String], text: Option<&str>) {
+        self.result(record, if argument.is_nullable() || text.is_some() { ", target" } else { "" });
         self.passed.push(if argument.is_nullable() { "c_loc(found)" } else { "found" }.to_string());
         if !argument.is_nullable() {
             self.after.push("if (ierr < FETI_OK) return".to_string());
@@ -299,6 +301,12 @@ impl Subroutine {
             self.declare(&format!("{attributes}, intent(inout)"), &format!("{array}(*)"));
             self.after.push(format!("call {give}([{}], {size}, {array})", values.join(", ")));
         }
+        if let Some((name, member)) = text.and_then(|text| text.split_once('=')) {
+            let name = name.to_lowercase();
+            self.declare("character(len=*), intent(inout)", &name);
+            self.after.push(format!("{name} = f_text(c_loc(found%{member}))"));
+            self.dummies.push(name);
+        }
     }
 
     fn text(mut self, line: &Line, function: &Function) -> String {
@@ -309,7 +317,7 @@ impl Subroutine {
         let name = line.name.to_lowercase();
         let _ = write!(
             out,
-            "recursive subroutine {name}({}, ierr)\n  use feti_contact_f77_base\n  implicit none\n",
+            "recursive subroutine {name}({}, ierr)\n  use feti_contact_f77_base\n",
             self.dummies.join(", ")
         );
         self.declare("integer, intent(out)", "ierr");
