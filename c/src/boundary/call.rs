@@ -22,7 +22,7 @@ macro_rules! twins {
     ($(#[$doc:meta])* fn $narrow:ident, $wide:ident($($argument:tt)*) |$call:ident| $body:block) => {
         $crate::boundary::twins! { @ i32 [$(#[$doc])*] $narrow($($argument)*) |$call| $body }
         $crate::boundary::twins! { @ i64 [
-            #[doc = concat!("As [`", stringify!($narrow), "`], with 64-bit indices.")]
+            #[doc = concat!("As `", stringify!($narrow), "`, with 64-bit indices.")]
             #[doc = "\n# Safety\nThe arrays have the shapes that are given there."]
         ] $wide($($argument)*) |$call| $body }
     };
