@@ -5,11 +5,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::doc::Direction;
-use crate::f77_constants::positions;
+use crate::f77_constants::{field, positions, TABLE};
 use crate::fortran::{continued, write_doc};
 use crate::model::{Api, Argument, Function, Type};
-
-pub const TABLE: &str = include_str!("f77.table");
 
 /// A line of the table.
 struct Line<'a> {
@@ -362,9 +360,4 @@ fn constant(api: &Api, argument: &Argument) -> &'static str {
         "flags" => "FETI_COPY",
         _ => "0_c_int32_t",
     }
-}
-
-pub fn field<'a>(api: &'a Api, record: &str, member: &str) -> Option<&'a Type> {
-    let fields = api.find_struct(record)?.fields.as_deref()?;
-    Some(&fields.iter().find(|field| field.name == member)?.ty)
 }

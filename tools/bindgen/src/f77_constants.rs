@@ -4,9 +4,9 @@
 use std::fmt::Write;
 
 use crate::doc::wrap;
-use crate::f77::{field, TABLE};
 use crate::model::{Api, Type};
 
+pub const TABLE: &str = include_str!("f77.table");
 /// Longest line of fixed form.
 const WIDTH: usize = 72;
 
@@ -111,4 +111,10 @@ fn comment(out: &mut String, text: &str) {
     for line in wrap("!     ", "!     ", text, WIDTH) {
         let _ = writeln!(out, "{line}");
     }
+}
+
+/// The type of a member.
+pub fn field<'a>(api: &'a Api, record: &str, member: &str) -> Option<&'a Type> {
+    let fields = api.find_struct(record)?.fields.as_deref()?;
+    Some(&fields.iter().find(|field| field.name == member)?.ty)
 }

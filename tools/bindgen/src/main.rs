@@ -37,6 +37,7 @@ mod statuses;
 mod tests;
 mod trace;
 mod typed;
+mod typed_table;
 
 const HEADER: &str = "include/feti_contact.h";
 const FORTRAN: &str = "include/fortran/feti_contact_c.f90";

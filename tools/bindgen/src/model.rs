@@ -158,6 +158,11 @@ impl Api {
         self.structs.iter().find(|s| s.name == name)
     }
 
+    /// A function that is known to exist.
+    pub fn function(&self, name: &str) -> &Function {
+        self.functions.iter().find(|function| function.name == name).expect("a function of C")
+    }
+
     pub fn is_callback(&self, ty: &Type) -> bool {
         matches!(ty, Type::Named(name) if self.callbacks.iter().any(|callback| callback.name == *name))
     }

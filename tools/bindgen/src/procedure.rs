@@ -7,73 +7,15 @@ use crate::fortran::{continued, write_doc};
 use crate::model::{Api, Argument, Function, Type};
 use crate::rules::described;
 use crate::statuses::upper;
-use crate::typed::{counted, Entry};
-
-/// The integers of index arrays and states.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    Int32,
-    Int64,
-}
-
-impl Kind {
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::Int32 => "int32",
-            Kind::Int64 => "int64",
-        }
-    }
-}
-
-/// An argument of the host: `R=basis(:,:)`, `rhs?(:)`, `val=>(:)`, `first?+1`, `body+1!`.
-pub struct Dummy {
-    pub name: &'static str,
-    pub of_c: &'static str,
-    pub shape: &'static str,
-    is_optional: bool,
-    is_pointer: bool,
-    is_raised: bool,
-    is_zero_after_failure: bool,
-}
-
-impl Dummy {
-    pub fn read(token: &'static str) -> Self {
-        let end = |text: &str| text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
-        let (name, mut rest) = token.split_at(end(token));
-        let mut of_c = name;
-        let is_pointer = rest.starts_with("=>");
-        if let Some(other) = rest.strip_prefix('=').filter(|_| !is_pointer) {
-            (of_c, rest) = other.split_at(end(other));
-        }
-        let shape = rest.find('(').map_or("", |start| &rest[start..=rest.find(')').unwrap_or(start)]);
-        let (is_optional, is_zero_after_failure) = (rest.contains('?'), rest.ends_with('!'));
-        Dummy {
-            name,
-            of_c,
-            shape,
-            is_optional,
-            is_pointer,
-            is_raised: rest.contains("+1"),
-            is_zero_after_failure,
-        }
-    }
-
-    pub fn rank(&self) -> usize {
-        self.shape.matches(':').count()
-    }
-}
+use crate::typed_table::{counted, Dummy, Entry, Kind};
 
 pub fn dummies(entry: &Entry) -> Vec<&'static str> {
     entry.arguments.iter().map(|token| Dummy::read(token).name).collect()
 }
 
-pub fn function<'a>(api: &'a Api, name: &str) -> &'a Function {
-    api.functions.iter().find(|function| function.name == name).expect("a function of C")
-}
-
 /// The first sentences of a function of C.
 pub fn summary(api: &Api, name: &str) -> String {
-    function(api, name)
+    api.function(name)
         .doc
         .summary()
         .replace(", with 32-bit indices", "")
@@ -83,7 +25,7 @@ pub fn summary(api: &Api, name: &str) -> String {
 /// The structs that the procedures take, which hosts declare.
 pub fn types(api: &Api, entries: &[Entry]) -> Vec<String> {
     let mut names = Vec::new();
-    for argument in entries.iter().flat_map(|entry| &function(api, entry.function).arguments) {
+    for argument in entries.iter().flat_map(|entry| &api.function(entry.function).arguments) {
         if let Some(Type::Named(name)) = argument.ty.target().filter(|ty| !api.is_opaque(ty)) {
             if !names.contains(name) {
                 names.push(name.clone());
@@ -104,7 +46,7 @@ struct Parts {
 }
 
 pub fn text(api: &Api, entry: &Entry, specific: &str, kind: Option<Kind>) -> String {
-    let of_c = function(api, entry.function);
+    let of_c = api.function(entry.function);
     let dummies: Vec<Dummy> = entry.arguments.iter().map(|token| Dummy::read(token)).collect();
     let mut parts = Parts::default();
     for dummy in &dummies {

@@ -1,15 +1,14 @@
 //! The rules of arguments, as the documentation of C has them, in the terms of the typed Fortran modules.
 
 use crate::model::{Api, Argument};
-use crate::procedure::{function, Dummy};
-use crate::typed::Entry;
+use crate::typed_table::{Dummy, Entry};
 
 /// What the arrays and flags of the procedures mean, in one paragraph.
 pub fn described(api: &Api, entries: &[&Entry]) -> Option<String> {
     let mut clauses: Vec<(&str, String)> = Vec::new();
     for entry in entries.iter().filter(|entry| !entry.by_hand) {
         for dummy in entry.arguments.iter().map(|token| Dummy::read(token)) {
-            let argument = function(api, entry.function).arguments.iter().find(|a| a.name == dummy.of_c);
+            let argument = api.function(entry.function).arguments.iter().find(|a| a.name == dummy.of_c);
             let Some(argument) =
                 argument.filter(|a| !["p", "body"].contains(&a.name.as_str()) || !a.is_scalar())
             else {

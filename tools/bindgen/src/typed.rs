@@ -10,10 +10,10 @@ use crate::doc::wrap;
 use crate::fortran::{continued, write_doc, LINE_WIDTH};
 use crate::model::Api;
 use crate::order;
-use crate::procedure::{self, Kind};
+use crate::procedure;
 use crate::rules;
+use crate::typed_table::{further, modules, Entry, Kind};
 
-const TABLE: &str = include_str!("typed/table");
 const WHOLE: &str = include_str!("typed/whole.f90");
 const PARTS: [(&str, &str); 6] = [
     ("bodies", include_str!("typed/bodies.f90")),
@@ -23,91 +23,6 @@ const PARTS: [(&str, &str); 6] = [
     ("states", include_str!("typed/states.f90")),
     ("stiffness", include_str!("typed/stiffness.f90")),
 ];
-
-/// A procedure of the table.
-#[derive(Clone, Debug, Default)]
-pub struct Entry {
-    pub module: &'static str,
-    pub generic: &'static str,
-    /// The name in module feti_contact, if it is not feti_ and the generic name.
-    face: Option<&'static str>,
-    pub name: &'static str,
-    pub by_hand: bool,
-    pub arguments: Vec<&'static str>,
-    pub function: &'static str,
-    pub note: &'static str,
-    /// (argument of C, condition, text)
-    pub checks: Vec<(&'static str, &'static str, &'static str)>,
-    /// (argument of C, value)
-    pub given: Vec<(&'static str, &'static str)>,
-    /// What describes a generic in place of the summary and the arguments of C.
-    described: Option<&'static str>,
-    paragraphs: Vec<&'static str>,
-}
-
-impl Entry {
-    fn outside(&self) -> String {
-        self.face.map_or(format!("feti_{}", self.generic), str::to_string)
-    }
-
-    /// The specific procedures: for integers of 4 and 8 bytes, or one.
-    pub fn specifics(&self) -> Vec<(String, Option<Kind>)> {
-        match self.name.strip_suffix('*') {
-            Some(stem) => {
-                [Kind::Int32, Kind::Int64].map(|kind| (format!("{stem}{}", kind.name()), Some(kind))).to_vec()
-            }
-            None => vec![(self.name.to_string(), None)],
-        }
-    }
-
-    /// `NAME`, `WORD NAME`, both with or without arguments, before the function of C.
-    fn read(module: &'static str, line: &'static str) -> Self {
-        let (head, note) = line.split_once(": ").unwrap_or((line, ""));
-        let (head, function) = head.rsplit_once(' ').expect("a line names a function of C");
-        let (names, arguments) = head.split_once('(').unwrap_or((head, ""));
-        let by_hand = names.ends_with(" by hand");
-        let names = names.trim_end_matches(" by hand");
-        let (generic, name) = names.split_once(' ').unwrap_or((names, names));
-        let face = generic.split_once('=').map(|(_, face)| face);
-        let plain = |name: &'static str| name.split('=').next().unwrap_or(name);
-        let (generic, name) = (plain(generic), plain(name));
-        let arguments = arguments.strip_suffix(')').unwrap_or(arguments).split(", ").collect();
-        Entry { module, generic, face, name, by_hand, arguments, function, note, ..Entry::default() }
-    }
-}
-
-/// The modules of the table, each with what it is about, and its procedures.
-fn modules() -> Vec<(&'static str, &'static str, Vec<Entry>)> {
-    let mut modules: Vec<(_, _, Vec<Entry>)> = Vec::new();
-    for line in TABLE.lines().filter(|line| !line.is_empty() && !line.starts_with(['#', ':', '+'])) {
-        if let Some(heading) = line.strip_prefix("module ") {
-            let (name, about) =
-                heading.split_once(": ").unwrap_or((heading.trim_end_matches(" by hand"), ""));
-            modules.push((name, about, Vec::new()));
-            continue;
-        }
-        let Some((module, _, entries)) = modules.last_mut() else { continue };
-        let last = entries.last_mut();
-        match (line.get(..4), last) {
-            (Some("  ? "), Some(entry)) => {
-                let (condition, text) = line[4..].split_once(": ").expect("condition and text");
-                let (k, condition) = condition.split_once(' ').expect("number and condition");
-                entry.checks.push((k, condition, text));
-            }
-            (Some("  = "), Some(entry)) => entry.given.extend(line[4..].split_once(' ')),
-            (Some("  < "), Some(entry)) => entry.described = Some(&line[4..]),
-            (Some("  > "), Some(entry)) => entry.paragraphs.push(&line[4..]),
-            _ => entries.push(Entry::read(module, line)),
-        }
-    }
-    modules
-}
-
-/// The members of a struct that count from 0 in C.
-pub fn counted(structure: &str) -> Vec<&'static str> {
-    let mut lists = TABLE.lines().filter_map(|line| line.strip_prefix(": ")?.split_once(' '));
-    lists.find(|(name, _)| *name == structure).map_or(Vec::new(), |(_, members)| members.split(' ').collect())
-}
 
 /// (path, text) of every generated module.
 pub fn print(api: &Api) -> Vec<(String, String)> {
@@ -140,8 +55,7 @@ fn whole(api: &Api) -> String {
                 names.push(name);
             }
         }
-        let more = TABLE.lines().skip_while(|line| !line.starts_with(&format!("module {name}"))).nth(1);
-        names.extend(more.and_then(|line| line.strip_prefix("+ ")).map(str::to_string));
+        names.extend(further(name).map(str::to_string));
         lists.push((name, names));
     }
     let mut out =
