@@ -15,12 +15,21 @@
  * Functions return a status: 0 for success, above 0 for an answer that is usable but incomplete, below
  * 0 for a failure, whose text feti_last_error returns. Exceptions are feti_version..., feti_status_...,
  * feti_option_count and feti_last_error. In the descriptions `FETI_STATE if ...` means that the function
- * returns FETI_STATE in that case.
+ * returns FETI_STATE in that case. After a failure nothing is written or changed, and the call can be
+ * repeated with other arguments; only FETI_INTERNAL closes the problem.
  *
- * Bodies, unknowns and rows count from 0; arrays of indices count from their argument `base`. Sparse
- * matrices are stored as compressed sparse rows, dense matrices by columns. The library copies what it
- * is given, except with FETI_BORROW. It prints nothing. Only one call at a time may use a problem;
- * several threads may use different problems. Any consistent set of units will do.
+ * `p` is the handle, `body` the number of a body, `n` the number of its unknowns. Bodies, unknowns and
+ * rows count from 0; arrays of indices count from their argument `base`. An array has the shape in
+ * parentheses; other pointers lead to one number, and may be NULL only if the description says so.
+ * Texts end with NUL. Sparse matrices are stored as compressed sparse rows, dense matrices by columns.
+ * The library copies what it is given, except with FETI_BORROW. Structs begin with `struct_size`, which
+ * the caller sets to their size. Functions of the host, and the data given with them, must exist until
+ * they are replaced or the problem is destroyed. The library prints nothing. Only one call at a time may
+ * use a problem; several threads may use different problems. Any consistent set of units will do.
+ *
+ * A first program needs ten functions: feti_problem_create, feti_body_add, feti_body_stiffness_i32,
+ * feti_body_load, feti_rows_add_i32, feti_solve, feti_displacement, feti_multipliers, feti_last_error,
+ * feti_problem_destroy.
  *
  * Example: a block of two unknowns and stiffness 4000 N/mm floats 0.5 mm before a wall, and a force of
  * 100 N on its rear pushes it there. It prints `force 100 N, rear 0.525 mm, front 0.5 mm`.
@@ -132,1307 +141,733 @@
 
 #ifdef __cplusplus
 extern "C" {
-#endif /* __cplusplus */
+#endif
 
-/*
- * Problem
- * =======
- * Create and destroy a problem, which owns all other data.
- */
+/* ==== Problem ====
+ * Create and destroy a problem, which owns all other data. */
 
 /**
- * A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never
- * an address.
+ * A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never an
+ * address.
  */
 typedef struct feti_problem feti_problem;
 
 /**
  * Creates a problem without bodies and rows.
  *
- * The handle is valid until feti_problem_destroy; its number is never used again. After a failure
- * `p` is unchanged. FETI_MEMORY, without an error text, if there is not enough memory for an empty
- * problem.
- *
- * @param[out] p (scalar) the handle
- *
- * Safety: `p` has room for a pointer.
+ * The handle is valid until feti_problem_destroy; its number is never used again. FETI_MEMORY, without an
+ * error text, if there is not enough memory for an empty problem.
  */
-int32_t feti_problem_create(struct feti_problem **p);
+int32_t feti_problem_create(feti_problem **p);
 
 /**
  * Destroys a problem with all it holds and sets the caller's handle to NULL.
  *
- * FETI_BUSY while another call on the problem runs; the problem and the handle are then unchanged.
- * From then on calls with any other copy of the handle return FETI_HANDLE.
- *
- * @param[in,out] p (scalar) the handle
- *
- * Safety: `p` points to a pointer.
+ * FETI_BUSY while another call on the problem runs; the problem and the handle are then unchanged. From
+ * then on calls with any other copy of the handle return FETI_HANDLE.
  */
-int32_t feti_problem_destroy(struct feti_problem **p);
+int32_t feti_problem_destroy(feti_problem **p);
 
-/*
- * Bodies
- * ======
- * Give each body its stiffness matrix and its load.
- */
+/* ==== Bodies ====
+ * Give each body its stiffness matrix and its load. */
 
-/**
- * Storage: every entry of the symmetric matrix is given.
- */
+/** Storage: every entry of the symmetric matrix is given. */
 #define FETI_FULL 0
-
-/**
- * Storage: entries with column <= row are given.
- */
+/** Storage: entries with column <= row are given. */
 #define FETI_LOWER 1
-
-/**
- * Storage: entries with column >= row are given.
- */
+/** Storage: entries with column >= row are given. */
 #define FETI_UPPER 2
-
-/**
- * Stiffness flag: the matrix is copied.
- */
+/** Stiffness flag: the matrix is copied. */
 #define FETI_COPY 0
-
 /**
- * Stiffness flag: keep using the caller's arrays (values, and 32-bit 0-based columns) if the
- * layout permits.
+ * Stiffness flag: keep using the caller's arrays (values, and 32-bit 0-based columns) if the layout
+ * permits.
  */
 #define FETI_BORROW 1
-
 /**
- * In place of a body number: all bodies. If they have numbers of the host (feti_body_numbering_i32
- * or _i64), arrays use these numbers.
+ * In place of a body number: all bodies. If they have numbers of the host (feti_body_numbering_i32 or
+ * _i64), arrays use these numbers.
  */
 #define FETI_ALL -1
 
 /**
  * Adds a body with `n` unknowns.
  *
- * Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW if all bodies
- * together would have more than 2^63 - 1 unknowns. After a failure nothing is added.
+ * Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW if all bodies together
+ * would have more than 2^63 - 1 unknowns.
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  n    (scalar) unknowns of the body, > 0
- * @param[out] body (scalar) number of the body
- *
- * Safety: `body` has room for one number.
+ * @param      n    unknowns of the body, > 0
+ * @param[out] body number of the body
  */
-int32_t feti_body_add(struct feti_problem *p, int64_t n, int64_t *body);
+int32_t feti_body_add(feti_problem *p, int64_t n, int64_t *body);
 
 /**
  * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
  *
- * The library copies the matrix; another call replaces pattern and values. The columns of a row
- * may come in any order, but none twice. With FETI_FULL, K must be symmetric within option
- * symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0
- * in a row with other entries, is refused by feti_setup, unless the motions of the body are
- * FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
+ * Another call replaces pattern and values. The columns of a row may come in any order, but none twice.
+ * With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and
+ * K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup,
+ * unless the motions of the body are FETI_SOFT (feti_body_null_space).
  *
- * With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if
- * storage is FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it
- * copies everything (see `borrowed` of feti_body_info). Borrowed arrays must stay readable and
- * unchanged until the matrix is replaced or the problem is destroyed. There is one exception: the
- * host may rewrite the values between two calls if its next call is feti_body_values with the same
- * array.
+ * With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is
+ * FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it copies everything
+ * (see `borrowed` of feti_body_info). Borrowed arrays must stay readable and unchanged until the matrix is
+ * replaced or the problem is destroyed. There is one exception: the host may rewrite the values between
+ * two calls if its next call is feti_body_values with the same array.
  *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
- *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
- *
- * Safety: The arrays have the given shapes.
+ * @param row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
+ * @param col     (row_ptr[n] - base) columns, counted from `base`
+ * @param val     (row_ptr[n] - base) entries of K, force per length
+ * @param base    0 or 1: what `row_ptr` and `col` count from
+ * @param storage FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param flags   FETI_COPY or FETI_BORROW
  */
-int32_t feti_body_stiffness_i32(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int32_t *row_ptr,
-                                const int32_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
+int32_t feti_body_stiffness_i32(feti_problem *p, int64_t body, int64_t n, const int32_t *row_ptr,
+                                const int32_t *col, const double *val, int32_t base, int32_t storage,
                                 int32_t flags);
 
-/**
- * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
- *
- * The library copies the matrix; another call replaces pattern and values. The columns of a row
- * may come in any order, but none twice. With FETI_FULL, K must be symmetric within option
- * symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0
- * in a row with other entries, is refused by feti_setup, unless the motions of the body are
- * FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
- *
- * With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if
- * storage is FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it
- * copies everything (see `borrowed` of feti_body_info). Borrowed arrays must stay readable and
- * unchanged until the matrix is replaced or the problem is destroyed. There is one exception: the
- * host may rewrite the values between two calls if its next call is feti_body_values with the same
- * array.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
- *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_i64(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int64_t *row_ptr,
-                                const int64_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
+/** As feti_body_stiffness_i32, with 64-bit indices. */
+int32_t feti_body_stiffness_i64(feti_problem *p, int64_t body, int64_t n, const int64_t *row_ptr,
+                                const int64_t *col, const double *val, int32_t base, int32_t storage,
                                 int32_t flags);
 
 /**
  * Gives the stiffness matrix K of a body by rows with a separate diagonal, with 32-bit indices.
  *
- * For codes that store the diagonal in a separate array. The library copies the matrix; another
- * call replaces pattern and values. The columns of a row may come in any order, but none twice.
- * With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij
- * and K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is refused by
- * feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a failure
- * the body keeps its previous matrix.
+ * For codes that store the diagonal in a separate array. Another call replaces pattern and values. The
+ * columns of a row may come in any order, but none twice. With FETI_FULL, K must be symmetric within
+ * option symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0
+ * in a row with other entries, is refused by feti_setup, unless the motions of the body are FETI_SOFT
+ * (feti_body_null_space).
  *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] diag    (n) K_ii, force per length
- * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
- *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`; never the diagonal entry
- * @param[in] val     (row_ptr[n] - base) off-diagonal entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which also copies: the library cannot use
- *                    a matrix in this form directly
- *
- * Safety: The arrays have the given shapes.
+ * @param diag    (n) K_ii, force per length
+ * @param row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
+ * @param col     (row_ptr[n] - base) columns, counted from `base`; never the diagonal entry
+ * @param val     (row_ptr[n] - base) off-diagonal entries of K, force per length
+ * @param base    0 or 1: what `row_ptr` and `col` count from
+ * @param storage FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param flags   FETI_COPY, or FETI_BORROW, which also copies: the library cannot use a matrix in this
+ *                form directly
  */
-int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
-                                      int64_t body,
-                                      int64_t n,
-                                      const double *diag,
-                                      const int32_t *row_ptr,
-                                      const int32_t *col,
-                                      const double *val,
-                                      int32_t base,
-                                      int32_t storage,
-                                      int32_t flags);
+int32_t feti_body_stiffness_split_i32(feti_problem *p, int64_t body, int64_t n, const double *diag,
+                                      const int32_t *row_ptr, const int32_t *col, const double *val,
+                                      int32_t base, int32_t storage, int32_t flags);
+
+/** As feti_body_stiffness_split_i32, with 64-bit indices. */
+int32_t feti_body_stiffness_split_i64(feti_problem *p, int64_t body, int64_t n, const double *diag,
+                                      const int64_t *row_ptr, const int64_t *col, const double *val,
+                                      int32_t base, int32_t storage, int32_t flags);
 
 /**
- * Gives the stiffness matrix K of a body by rows with a separate diagonal, with 64-bit indices.
+ * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
  *
- * For codes that store the diagonal in a separate array. The library copies the matrix; another
- * call replaces pattern and values. The columns of a row may come in any order, but none twice.
- * With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij
- * and K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is refused by
- * feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a failure
- * the body keeps its previous matrix.
+ * Another call replaces the matrix. With FETI_LOWER and FETI_UPPER the other triangle is not read. A
+ * diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the
+ * motions of the body are FETI_SOFT (feti_body_null_space).
  *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] diag    (n) K_ii, force per length
- * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
- *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`; never the diagonal entry
- * @param[in] val     (row_ptr[n] - base) off-diagonal entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which also copies: the library cannot use
- *                    a matrix in this form directly
- *
- * Safety: The arrays have the given shapes.
+ * @param k       (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param ld      >= n
+ * @param storage FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param flags   FETI_COPY
  */
-int32_t feti_body_stiffness_split_i64(struct feti_problem *p,
-                                      int64_t body,
-                                      int64_t n,
-                                      const double *diag,
-                                      const int64_t *row_ptr,
-                                      const int64_t *col,
-                                      const double *val,
-                                      int32_t base,
-                                      int32_t storage,
-                                      int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
- * bodies.
- *
- * The library copies the matrix; another call replaces it. With FETI_LOWER and FETI_UPPER the
- * other triangle is not read. A diagonal entry that is negative, or 0 in a row with other entries,
- * is refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space).
- * After a failure the body keeps its previous matrix.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
- * @param[in] ld      (scalar) >= n
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_stiffness_dense(struct feti_problem *p,
-                                  int64_t body,
-                                  int64_t n,
-                                  const double *k,
-                                  int64_t ld,
-                                  int32_t storage,
-                                  int32_t flags);
+int32_t feti_body_stiffness_dense(feti_problem *p, int64_t body, int64_t n, const double *k, int64_t ld,
+                                  int32_t storage, int32_t flags);
 
 /**
  * Gives the load of a body.
  *
- * The load is copied and stays valid until the next call replaces it; without a call the load of a
- * body is zero. With FETI_ALL the array holds the loads of all bodies. If the bodies have numbers
- * of the host, the array uses these numbers, and entries that belong to no unknown are ignored;
- * otherwise it holds one body after the other. If several unknowns share one number (option glue),
- * the load acts on the unknown of the first body. FETI_STATE with FETI_ALL if some bodies have
- * numbers of the host and others have none. After a failure all loads are unchanged.
+ * The load stays valid until the next call replaces it; without a call the load of a body is zero. With
+ * FETI_ALL the array holds the loads of all bodies. If the bodies have numbers of the host, the array uses
+ * these numbers, and entries that belong to no unknown are ignored; otherwise it holds one body after the
+ * other. If several unknowns share one number (option glue), the load acts on the unknown of the first
+ * body. FETI_STATE with FETI_ALL if some bodies have numbers of the host and others have none.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0, or FETI_ALL
- * @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, or
- *                 without numbers the unknowns of all bodies
- * @param[in] f    (n) force
- *
- * Safety: The array has the given shape.
+ * @param body number of the body, from 0, or FETI_ALL
+ * @param n    unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers the
+ *             unknowns of all bodies
+ * @param f    (n) force
  */
-int32_t feti_body_load(struct feti_problem *p, int64_t body, int64_t n, const double *f);
+int32_t feti_body_load(feti_problem *p, int64_t body, int64_t n, const double *f);
 
 /**
  * Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
  *
- * Use this function if the host numbers the unknowns of all bodies consecutively; each number then
- * names one unknown in the whole problem. Arrays with FETI_ALL in feti_body_load,
- * feti_displacement and feti_reaction then use these numbers, and so do rows whose `body` is NULL
- * in feti_rows_add_i32 and _i64. These calls need numbers for all bodies: otherwise they return
- * FETI_STATE and name a body without numbers. The numbers are copied; another call replaces them.
- * Existing rows stay on their unknowns. After a failure the body keeps its previous numbers.
+ * Use this function if the host numbers the unknowns of all bodies consecutively; each number then names
+ * one unknown in the whole problem. Arrays with FETI_ALL in feti_body_load, feti_displacement and
+ * feti_reaction then use these numbers, and so do rows whose `body` is NULL in feti_rows_add_i32 and _i64.
+ * These calls need numbers for all bodies: otherwise they return FETI_STATE and name a body without
+ * numbers. Another call replaces the numbers. Existing rows stay on their unknowns.
  *
- * If option glue = 1 was set before, unknowns of several bodies may share one number. These
- * unknowns then move together; the library joins them by internal equality rows, which change
- * neither the host's rows and multipliers nor the counts. With FETI_ALL a load on a shared number
- * acts on its first body, the displacement is the one of all its bodies, and the reaction is the
- * sum over them. Rows whose `body` is NULL act on the first body. A change of shared numbers drops
- * the last answer.
+ * If option glue = 1 was set before, unknowns of several bodies may share one number. These unknowns then
+ * move together; the library joins them by internal equality rows, which change neither the host's rows
+ * and multipliers nor the counts. With FETI_ALL a load on a shared number acts on its first body, the
+ * displacement is the one of all its bodies, and the reaction is the sum over them. Rows whose `body` is
+ * NULL act on the first body. A change of shared numbers drops the last answer.
  *
- * @param[in] p      (scalar) the handle
- * @param[in] body   (scalar) number of the body, from 0
- * @param[in] n      (scalar) unknowns of the body
- * @param[in] number (n) number of each unknown, counted from `base`; different for all unknowns of
- *                   the body and, without option glue, of all bodies
- * @param[in] base   (scalar) 0 or 1: what the numbers count from
- *
- * Safety: The array has the given shape.
+ * @param number (n) number of each unknown, counted from `base`; different for all unknowns of the body
+ *               and, without option glue, of all bodies
+ * @param base   0 or 1: what the numbers count from
  */
-int32_t feti_body_numbering_i32(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int32_t *number,
+int32_t feti_body_numbering_i32(feti_problem *p, int64_t body, int64_t n, const int32_t *number,
                                 int32_t base);
 
-/**
- * Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
- *
- * Use this function if the host numbers the unknowns of all bodies consecutively; each number then
- * names one unknown in the whole problem. Arrays with FETI_ALL in feti_body_load,
- * feti_displacement and feti_reaction then use these numbers, and so do rows whose `body` is NULL
- * in feti_rows_add_i32 and _i64. These calls need numbers for all bodies: otherwise they return
- * FETI_STATE and name a body without numbers. The numbers are copied; another call replaces them.
- * Existing rows stay on their unknowns. After a failure the body keeps its previous numbers.
- *
- * If option glue = 1 was set before, unknowns of several bodies may share one number. These
- * unknowns then move together; the library joins them by internal equality rows, which change
- * neither the host's rows and multipliers nor the counts. With FETI_ALL a load on a shared number
- * acts on its first body, the displacement is the one of all its bodies, and the reaction is the
- * sum over them. Rows whose `body` is NULL act on the first body. A change of shared numbers drops
- * the last answer.
- *
- * @param[in] p      (scalar) the handle
- * @param[in] body   (scalar) number of the body, from 0
- * @param[in] n      (scalar) unknowns of the body
- * @param[in] number (n) number of each unknown, counted from `base`; different for all unknowns of
- *                   the body and, without option glue, of all bodies
- * @param[in] base   (scalar) 0 or 1: what the numbers count from
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_numbering_i64(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int64_t *number,
+/** As feti_body_numbering_i32, with 64-bit indices. */
+int32_t feti_body_numbering_i64(feti_problem *p, int64_t body, int64_t n, const int64_t *number,
                                 int32_t base);
 
-/*
- * Null spaces
- * ===========
- * Give the motions that a matrix does not resist; otherwise the library finds them.
- */
+/* ==== Null spaces ====
+ * Give the motions that a matrix does not resist; otherwise the library finds them. */
 
-/**
- * Null-space flag: the columns span the null space.
- */
+/** Null-space flag: the columns span the null space. */
 #define FETI_EXACT 0
-
-/**
- * Null-space flag: the null space lies in the span of the columns, and the library selects it from
- * there.
- */
+/** Null-space flag: the null space lies in the span of the columns, and the library selects it from there. */
 #define FETI_CANDIDATES 1
-
 /**
- * Null-space flag: motions that K resists weakly or not at all; the library computes the exact
- * motions and their stiffness from K.
+ * Null-space flag: motions that K resists weakly or not at all; the library computes the exact motions and
+ * their stiffness from K.
  */
 #define FETI_SOFT 2
 
 /**
- * Gives position and direction of every unknown of a body; the library computes candidates for the
- * null space from them.
+ * Gives position and direction of every unknown of a body; the library computes candidates for the null
+ * space from them.
  *
- * The data are copied; another call replaces them. If you give neither coordinates nor a null
- * space, the library finds the null space from K. A null space given by feti_body_null_space takes
- * precedence over the coordinates. If K has a small positive or negative stiffness along the rigid
- * body motions, see feti_body_coordinates_flags. Shells and beams list a node again for its
- * rotations. After a failure the body keeps its previous data.
+ * Another call replaces the data. If you give neither coordinates nor a null space, the library finds the
+ * null space from K. A null space given by feti_body_null_space takes precedence over the coordinates. If
+ * K has a small positive or negative stiffness along the rigid body motions, see
+ * feti_body_coordinates_flags. Shells and beams list a node again for its rotations.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] dim  (scalar) numbers per position, 1 to 3
- * @param[in] n    (scalar) unknowns of the body
- * @param[in] node (n) label of the node of each unknown: any number
- * @param[in] dir  (n) 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3
- * @param[in] xyz  (ld * n) coordinate k of unknown i is xyz[k + ld i], length
- * @param[in] ld   (scalar) >= dim: distance of the coordinates of one unknown from those of the
- *                 next, dim in an array without gaps; n, beyond 12 unknowns, is refused
- *
- * Safety: The arrays have the given shapes.
+ * @param dim  numbers per position, 1 to 3
+ * @param node (n) label of the node of each unknown: any number
+ * @param dir  (n) 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3
+ * @param xyz  (ld * n) coordinate k of unknown i is xyz[k + ld i], length
+ * @param ld   >= dim: distance of the coordinates of one unknown from those of the next, dim in an array
+ *             without gaps; n, beyond 12 unknowns, is refused
  */
-int32_t feti_body_coordinates(struct feti_problem *p,
-                              int64_t body,
-                              int32_t dim,
-                              int64_t n,
-                              const int32_t *node,
-                              const int32_t *dir,
-                              const double *xyz,
-                              int64_t ld);
+int32_t feti_body_coordinates(feti_problem *p, int64_t body, int32_t dim, int64_t n, const int32_t *node,
+                              const int32_t *dir, const double *xyz, int64_t ld);
 
 /**
- * Says how to use the rigid body motions that the coordinates give: as candidates for the null
- * space, as the null space, or as motions that K resists weakly.
+ * Says how to use the rigid body motions that the coordinates give: as candidates for the null space, as
+ * the null space, or as motions that K resists weakly.
  *
- * The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given
- * before or after this call; the default is FETI_CANDIDATES. With FETI_EXACT you declare that the
- * body floats as a whole: feti_setup refuses the body, and names the unknown, if K resists a rigid
- * body motion by more than rounding, for example because a coefficient is missing. With FETI_SOFT,
- * weak springs, rounding of the entries of K, geometric stiffness and supports may give the
- * motions a positive or negative stiffness, and the motions need not be exact. The library
- * computes the motions and their stiffness from K and takes them into account exactly, as it does
- * for motions given to feti_body_null_space with FETI_SOFT. That function also describes what
- * happens if K is indefinite or has further null vectors. The flag has no effect without
- * coordinates or if a null space was given. FETI_UNSUPPORTED from feti_setup if the host provides
- * K+ (feti_body_operator). After a failure the body keeps its previous flag.
+ * The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given before
+ * or after this call; the default is FETI_CANDIDATES. With FETI_EXACT you declare that the body floats as
+ * a whole: feti_setup refuses the body, and names the unknown, if K resists a rigid body motion by more
+ * than rounding, for example because a coefficient is missing. With FETI_SOFT, weak springs, rounding of
+ * the entries of K, geometric stiffness and supports may give the motions a positive or negative
+ * stiffness, and the motions need not be exact. The library computes the motions and their stiffness from
+ * K and takes them into account exactly, as it does for motions given to feti_body_null_space with
+ * FETI_SOFT. That function also describes what happens if K is indefinite or has further null vectors. The
+ * flag has no effect without coordinates or if a null space was given. FETI_UNSUPPORTED from feti_setup if
+ * the host provides K+ (feti_body_operator).
  *
- * @param[in] p     (scalar) the handle
- * @param[in] body  (scalar) number of the body, from 0
- * @param[in] flags (scalar) FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
+ * @param flags FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
  */
-int32_t feti_body_coordinates_flags(struct feti_problem *p, int64_t body, int32_t flags);
+int32_t feti_body_coordinates_flags(feti_problem *p, int64_t body, int32_t flags);
 
 /**
- * Gives a basis of the null space of a body, candidates for the null space, or motions that K
- * resists weakly.
+ * Gives a basis of the null space of a body, candidates for the null space, or motions that K resists
+ * weakly.
  *
- * The basis is copied; another call replaces it. If you do not call this function, the coordinates
- * of the unknowns give candidates (feti_body_coordinates); without coordinates the library finds
- * the null space from K. feti_setup checks that `K R = 0` holds. With FETI_SOFT this equation need
- * not hold: weak springs, rounding of the entries of K and geometric stiffness may give the
- * motions a positive or negative stiffness, and diagonal entries of K may be negative. The columns
- * then only choose the fixing unknowns; the library computes the motions and their stiffness from
- * K and takes them into account exactly. If K is still indefinite or singular with these unknowns
- * fixed, the library fixes up to six more, each with its own column in feti_body_null_space_get.
- * FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator); FETI_INDEFINITE
- * from feti_setup if K has negative stiffness along more motions than that, and from feti_solve if
- * the contact does not restrain a motion with negative stiffness. After a failure the body keeps
- * its previous basis.
+ * Another call replaces the basis. If you do not call this function, the coordinates of the unknowns give
+ * candidates (feti_body_coordinates); without coordinates the library finds the null space from K.
+ * feti_setup checks that `K R = 0` holds. With FETI_SOFT this equation need not hold: weak springs,
+ * rounding of the entries of K and geometric stiffness may give the motions a positive or negative
+ * stiffness, and diagonal entries of K may be negative. The columns then only choose the fixing unknowns;
+ * the library computes the motions and their stiffness from K and takes them into account exactly. If K is
+ * still indefinite or singular with these unknowns fixed, the library fixes up to six more, each with its
+ * own column in feti_body_null_space_get. FETI_UNSUPPORTED from feti_setup if the host provides K+
+ * (feti_body_operator); FETI_INDEFINITE from feti_setup if K has negative stiffness along more motions
+ * than that, and from feti_solve if the contact does not restrain a motion with negative stiffness.
  *
- * @param[in] p     (scalar) the handle
- * @param[in] body  (scalar) number of the body, from 0
- * @param[in] r     (scalar) columns; 0 with FETI_EXACT claims that K is not singular, as
- *                  feti_body_no_null_space does
- * @param[in] n     (scalar) unknowns of the body
- * @param[in] basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
- * @param[in] ldr   (scalar) >= n
- * @param[in] flags (scalar) FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
- *
- * Safety: The array has the given shape.
+ * @param r     columns; 0 with FETI_EXACT claims that K is not singular, as feti_body_no_null_space does
+ * @param basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
+ * @param ldr   >= n
+ * @param flags FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
  */
-int32_t feti_body_null_space(struct feti_problem *p,
-                             int64_t body,
-                             int64_t r,
-                             int64_t n,
-                             const double *basis,
-                             int64_t ldr,
-                             int32_t flags);
+int32_t feti_body_null_space(feti_problem *p, int64_t body, int64_t r, int64_t n, const double *basis,
+                             int64_t ldr, int32_t flags);
 
 /**
  * Says that a body has no null space: its supports hold it, K is not singular.
  *
- * As feti_body_null_space with no columns and FETI_EXACT; that K is not singular is checked in
- * feti_setup. Calling feti_body_null_space afterwards replaces it. After a failure the body keeps
- * what it had.
- *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
+ * As feti_body_null_space with no columns and FETI_EXACT; that K is not singular is checked in feti_setup.
+ * Calling feti_body_null_space afterwards replaces it.
  */
-int32_t feti_body_no_null_space(struct feti_problem *p, int64_t body);
+int32_t feti_body_no_null_space(feti_problem *p, int64_t body);
 
 /**
  * Reads the null space that the library uses for a body.
  *
- * Runs feti_setup when it is due. After a failure nothing is written. If K is not connected, the
- * columns are those of one connected part after the other, zero on all other parts. Unknowns
- * without stiffness that no row and no load touches have no column.
+ * Runs feti_setup when it is due. If K is not connected, the columns are those of one connected part after
+ * the other, zero on all other parts. Unknowns without stiffness that no row and no load touches have no
+ * column.
  *
- * @param[in]     p     (scalar) the handle
- * @param[in]     body  (scalar) number of the body, from 0
- * @param[in]     n     (scalar) unknowns of the body
- * @param[in,out] r     (scalar) in: columns that fit in `basis`, ignored without `basis`; out:
- *                      dimension of the null space
+ * @param[in,out] r     in: columns that fit in `basis`, ignored without `basis`; out: dimension of the
+ *                      null space
  * @param[out]    basis (ldr * r) column-major; NULL: only the dimension is returned
- * @param[in]     ldr   (scalar) >= n; ignored without `basis`
- *
- * Safety: The arrays have the given shapes.
+ * @param         ldr   >= n; ignored without `basis`
  */
-int32_t feti_body_null_space_get(struct feti_problem *p,
-                                 int64_t body,
-                                 int64_t n,
-                                 int64_t *r,
-                                 double *basis,
+int32_t feti_body_null_space_get(feti_problem *p, int64_t body, int64_t n, int64_t *r, double *basis,
                                  int64_t ldr);
 
 /**
  * Chooses the fixing unknowns of a body; otherwise the library chooses them.
  *
- * The choice affects the iterations of the paper's methods in printed units, but neither forces
- * nor displacements. There must be as many fixing unknowns as the null space has dimensions, and
- * they must hold every motion of the null space; feti_setup checks both. Another call replaces
- * them. After a failure the body keeps its previous fixing unknowns.
+ * The choice affects the iterations of the paper's methods in printed units, but neither forces nor
+ * displacements. There must be as many fixing unknowns as the null space has dimensions, and they must
+ * hold every motion of the null space; feti_setup checks both. Another call replaces them.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] r    (scalar) dimension of the null space of the body; 0: the library chooses again
- * @param[in] dof  (r) unknowns of the body, from 0; may be NULL when r = 0
- *
- * Safety: The array has the given shape.
+ * @param r   dimension of the null space of the body; 0: the library chooses again
+ * @param dof (r) unknowns of the body, from 0; may be NULL when r = 0
  */
-int32_t feti_body_fixing_set(struct feti_problem *p, int64_t body, int64_t r, const int64_t *dof);
+int32_t feti_body_fixing_set(feti_problem *p, int64_t body, int64_t r, const int64_t *dof);
 
 /**
  * Reads the fixing unknowns of a body: with them fixed, K has full rank.
  *
  * Runs feti_setup when it is due. FETI_UNSUPPORTED if the host provides K+ (feti_body_operator).
- * FETI_STATE if the body is cut into pieces (feti_body_mesh_i32 or _i64). After a failure nothing
- * is written.
+ * FETI_STATE if the body is cut into pieces (feti_body_mesh_i32 or _i64).
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  r    (scalar) dimension of the null space of the body
- * @param[out] dof  (r) unknowns of the body, from 0
- *
- * Safety: The array has the given shape.
+ * @param      r   dimension of the null space of the body
+ * @param[out] dof (r) unknowns of the body, from 0
  */
-int32_t feti_body_fixing(struct feti_problem *p, int64_t body, int64_t r, int64_t *dof);
+int32_t feti_body_fixing(feti_problem *p, int64_t body, int64_t r, int64_t *dof);
 
-/*
- * Bodies by elements
- * ==================
- * Give the elements of a large body; the library assembles them and cuts the body into pieces.
- */
+/* ==== Bodies by elements ====
+ * Give the elements of a large body; the library assembles them and cuts the body into pieces. */
 
 /**
- * Gives the connectivity of the elements of a body, with 32-bit indices: the first step of giving
- * K by elements.
+ * Gives the connectivity of the elements of a body, with 32-bit indices: the first step of giving K by
+ * elements.
  *
- * Then give the element matrices with feti_body_element or feti_body_elements, each element once.
- * Together they must form all of K; elements may have any size (springs to ground, penalties and
- * multi-point constraints are small elements). The library adds each element matrix to the matrix
- * of the body or, if the body is cut, of its piece, and keeps nothing else of the element. Loads,
- * rows, results, certificate and diagnosis refer to the body; only feti_body_info and
- * feti_body_pieces show the pieces.
+ * Then give the element matrices with feti_body_element or feti_body_elements, each element once. Together
+ * they must form all of K; elements may have any size (springs to ground, penalties and multi-point
+ * constraints are small elements). The library adds each element matrix to the matrix of the body or, if
+ * the body is cut, of its piece, and keeps nothing else of the element. Loads, rows, results, certificate
+ * and diagnosis refer to the body; only feti_body_info and feti_body_pieces show the pieces.
  *
  * Before the first matrix, give what the cut depends on: option `pieces` and the coordinates
- * (feti_body_coordinates). Without coordinates the library cuts the body by its connectivity. The
- * null spaces of the pieces come from the coordinates or are computed from K; a null space of the
- * whole body (feti_body_null_space) is not used for them. If a body is cut, feti_body_kplus,
- * feti_body_fixing, feti_dual_apply and feti_dual_rhs return FETI_STATE.
+ * (feti_body_coordinates). Without coordinates the library cuts the body by its connectivity. The null
+ * spaces of the pieces come from the coordinates or are computed from K; a null space of the whole body
+ * (feti_body_null_space) is not used for them. If a body is cut, feti_body_kplus, feti_body_fixing,
+ * feti_dual_apply and feti_dual_rhs return FETI_STATE.
  *
- * A number below `base` means a held unknown, as in the equation numbers of older codes: its row
- * and column are left out of K. The number `base` - 1 - k means held unknown k (with base 0: -1,
- * -2, ...; with base 1: 0, -1, ...). If feti_body_held_forces is not used, all held unknowns may
- * have the same number. If held unknowns have prescribed values u0, the host subtracts ke u0 from
- * the load.
+ * A number below `base` means a held unknown, as in the equation numbers of older codes: its row and
+ * column are left out of K. The number `base` - 1 - k means held unknown k (with base 0: -1, -2, ...; with
+ * base 1: 0, -1, ...). If feti_body_held_forces is not used, all held unknowns may have the same number.
+ * If held unknowns have prescribed values u0, the host subtracts ke u0 from the load.
  *
- * The call replaces a matrix or functions given before. Another call with the same connectivity
- * begins a new pass with the same pattern and the same cut. FETI_OVERFLOW if there are more than
- * 2^32 - 1 unknowns and held unknowns. FETI_STATE from feti_setup and feti_solve if elements are
- * missing; the error detail names the first missing element. After a failure the body keeps its
- * previous data.
+ * The call replaces a matrix or functions given before. Another call with the same connectivity begins a
+ * new pass with the same pattern and the same cut. FETI_OVERFLOW if there are more than 2^32 - 1 unknowns
+ * and held unknowns. FETI_STATE from feti_setup and feti_solve if elements are missing; the error detail
+ * names the first missing element.
  *
- * @param[in] p        (scalar) the handle
- * @param[in] body     (scalar) number of the body, from 0
- * @param[in] elements (scalar) number of elements, > 0
- * @param[in] ptr      (elements + 1) element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of
- *                     `dof`; starts with `base`
- * @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the element
- *                     matrices, counted from `base`; below `base`: held
- * @param[in] base     (scalar) 0 or 1: what `ptr` and `dof` count from
- *
- * Safety: The arrays have the given shapes.
+ * @param elements number of elements, > 0
+ * @param ptr      (elements + 1) element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of `dof`; starts
+ *                 with `base`
+ * @param dof      (ptr[elements] - base) unknowns in the order of the rows of the element matrices,
+ *                 counted from `base`; below `base`: held
+ * @param base     0 or 1: what `ptr` and `dof` count from
  */
-int32_t feti_body_mesh_i32(struct feti_problem *p,
-                           int64_t body,
-                           int64_t elements,
-                           const int32_t *ptr,
-                           const int32_t *dof,
-                           int32_t base);
+int32_t feti_body_mesh_i32(feti_problem *p, int64_t body, int64_t elements, const int32_t *ptr,
+                           const int32_t *dof, int32_t base);
 
-/**
- * Gives the connectivity of the elements of a body, with 64-bit indices: the first step of giving
- * K by elements.
- *
- * Then give the element matrices with feti_body_element or feti_body_elements, each element once.
- * Together they must form all of K; elements may have any size (springs to ground, penalties and
- * multi-point constraints are small elements). The library adds each element matrix to the matrix
- * of the body or, if the body is cut, of its piece, and keeps nothing else of the element. Loads,
- * rows, results, certificate and diagnosis refer to the body; only feti_body_info and
- * feti_body_pieces show the pieces.
- *
- * Before the first matrix, give what the cut depends on: option `pieces` and the coordinates
- * (feti_body_coordinates). Without coordinates the library cuts the body by its connectivity. The
- * null spaces of the pieces come from the coordinates or are computed from K; a null space of the
- * whole body (feti_body_null_space) is not used for them. If a body is cut, feti_body_kplus,
- * feti_body_fixing, feti_dual_apply and feti_dual_rhs return FETI_STATE.
- *
- * A number below `base` means a held unknown, as in the equation numbers of older codes: its row
- * and column are left out of K. The number `base` - 1 - k means held unknown k (with base 0: -1,
- * -2, ...; with base 1: 0, -1, ...). If feti_body_held_forces is not used, all held unknowns may
- * have the same number. If held unknowns have prescribed values u0, the host subtracts ke u0 from
- * the load.
- *
- * The call replaces a matrix or functions given before. Another call with the same connectivity
- * begins a new pass with the same pattern and the same cut. FETI_OVERFLOW if there are more than
- * 2^32 - 1 unknowns and held unknowns. FETI_STATE from feti_setup and feti_solve if elements are
- * missing; the error detail names the first missing element. After a failure the body keeps its
- * previous data.
- *
- * @param[in] p        (scalar) the handle
- * @param[in] body     (scalar) number of the body, from 0
- * @param[in] elements (scalar) number of elements, > 0
- * @param[in] ptr      (elements + 1) element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of
- *                     `dof`; starts with `base`
- * @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the element
- *                     matrices, counted from `base`; below `base`: held
- * @param[in] base     (scalar) 0 or 1: what `ptr` and `dof` count from
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_mesh_i64(struct feti_problem *p,
-                           int64_t body,
-                           int64_t elements,
-                           const int64_t *ptr,
-                           const int64_t *dof,
-                           int32_t base);
+/** As feti_body_mesh_i32, with 64-bit indices. */
+int32_t feti_body_mesh_i64(feti_problem *p, int64_t body, int64_t elements, const int64_t *ptr,
+                           const int64_t *dof, int32_t base);
 
 /**
  * Adds the stiffness matrix of one element; call it from the host's assembly loop.
  *
- * The library adds the matrix at once and does not keep it. The matrix must be symmetric within
- * option symmetry_tolerance; the library averages ke_ij and ke_ji. An element matrix may be
- * indefinite: feti_setup checks only the assembled matrix. Elements may come in any order, each
- * once. FETI_STATE if the element was given already, and before feti_body_mesh. With the last
- * element the matrix of the body is complete. The next element begins a new pass: new values with
- * the same pattern and cut, without a new analysis, as in a Newton loop. Until this pass is
- * complete the body has no matrix. If several threads assemble at the same time, such calls return
- * FETI_BUSY: the threads should collect blocks for feti_body_elements. The error detail names the
- * element. After a failure nothing of the element is added.
+ * The library adds the matrix at once and does not keep it. The matrix must be symmetric within option
+ * symmetry_tolerance; the library averages ke_ij and ke_ji. An element matrix may be indefinite:
+ * feti_setup checks only the assembled matrix. Elements may come in any order, each once. FETI_STATE if
+ * the element was given already, and before feti_body_mesh. With the last element the matrix of the body
+ * is complete. The next element begins a new pass: new values with the same pattern and cut, without a new
+ * analysis, as in a Newton loop. Until this pass is complete the body has no matrix. If several threads
+ * assemble at the same time, such calls return FETI_BUSY: the threads should collect blocks for
+ * feti_body_elements. The error detail names the element.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] e    (scalar) number of the element, from 0
- * @param[in] n    (scalar) unknowns of the element, including held ones
- * @param[in] ke   (ld * n) column-major: ke_ij is ke[i + ld j], force per length
- * @param[in] ld   (scalar) >= n
- *
- * Safety: The array has the given shape.
+ * @param e  number of the element, from 0
+ * @param n  unknowns of the element, including held ones
+ * @param ke (ld * n) column-major: ke_ij is ke[i + ld j], force per length
+ * @param ld >= n
  */
-int32_t feti_body_element(struct feti_problem *p,
-                          int64_t body,
-                          int64_t e,
-                          int64_t n,
-                          const double *ke,
-                          int64_t ld);
+int32_t feti_body_element(feti_problem *p, int64_t body, int64_t e, int64_t n, const double *ke, int64_t ld);
 
 /**
  * Adds the stiffness matrices of a block of elements, one after the other.
  *
  * The call works like feti_body_element for each element. With FETI_FULL every matrix is n x n,
- * column-major. With FETI_LOWER it is the lower triangle column by column, as in the elemental
- * format of MUMPS (this equals the upper triangle row by row); with FETI_UPPER it is the upper
- * triangle column by column. Each triangle has n (n + 1) / 2 numbers. The n of an element follows
- * from feti_body_mesh; feti_body_elements_size returns how many numbers a block has. FETI_STATE if
- * an element was given already, and before feti_body_mesh. The error detail names the element and
- * the entry within its matrix. After a failure nothing of the block is added.
+ * column-major. With FETI_LOWER it is the lower triangle column by column, as in the elemental format of
+ * MUMPS (this equals the upper triangle row by row); with FETI_UPPER it is the upper triangle column by
+ * column. Each triangle has n (n + 1) / 2 numbers. The n of an element follows from feti_body_mesh;
+ * feti_body_elements_size returns how many numbers a block has. FETI_STATE if an element was given
+ * already, and before feti_body_mesh. The error detail names the element and the entry within its matrix.
  *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] first   (scalar) number of the first element, from 0
- * @param[in] count   (scalar) number of elements
- * @param[in] ke      (sum of n^2 or n (n + 1) / 2) entries of the matrices, force per length
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- *
- * Safety: The array has the given shape.
+ * @param first   number of the first element, from 0
+ * @param count   number of elements
+ * @param ke      (sum of n^2 or n (n + 1) / 2) entries of the matrices, force per length
+ * @param storage FETI_FULL, FETI_LOWER or FETI_UPPER
  */
-int32_t feti_body_elements(struct feti_problem *p,
-                           int64_t body,
-                           int64_t first,
-                           int64_t count,
-                           const double *ke,
+int32_t feti_body_elements(feti_problem *p, int64_t body, int64_t first, int64_t count, const double *ke,
                            int32_t storage);
 
 /**
  * Returns how many numbers feti_body_elements expects for a block of elements.
  *
- * FETI_STATE before feti_body_mesh. After a failure nothing is written.
+ * FETI_STATE before feti_body_mesh.
  *
- * @param[in]  p       (scalar) the handle
- * @param[in]  body    (scalar) number of the body, from 0
- * @param[in]  first   (scalar) number of the first element, from 0
- * @param[in]  count   (scalar) number of elements
- * @param[in]  storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[out] nnz     (scalar) sum of n^2, or of n (n + 1) / 2 for the triangles
- *
- * Safety: `nnz` has room for one number.
+ * @param      first   number of the first element, from 0
+ * @param      count   number of elements
+ * @param      storage FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[out] nnz     sum of n^2, or of n (n + 1) / 2 for the triangles
  */
-int32_t feti_body_elements_size(struct feti_problem *p,
-                                int64_t body,
-                                int64_t first,
-                                int64_t count,
-                                int32_t storage,
+int32_t feti_body_elements_size(feti_problem *p, int64_t body, int64_t first, int64_t count, int32_t storage,
                                 int64_t *nnz);
 
 /**
- * Reads the forces on the held unknowns of a body in the last answer: K_hf u, their rows of K
- * times the displacement.
+ * Reads the forces on the held unknowns of a body in the last answer: K_hf u, their rows of K times the
+ * displacement.
  *
- * Held unknowns have numbers below `base` in feti_body_mesh_i32 or _i64: held unknown k has the
- * number `base` - 1 - k. The result is the support reaction without two parts, which the host
- * accounts for: the part of prescribed values (the host moved ke u0 to the load), which must be
- * added, and loads on the held unknowns themselves, which must be subtracted. FETI_STATE if the
- * body was not given by its elements, and if no solve has given an answer yet. After a failure
- * nothing is written.
+ * Held unknowns have numbers below `base` in feti_body_mesh_i32 or _i64: held unknown k has the number
+ * `base` - 1 - k. The result is the support reaction without two parts, which the host accounts for: the
+ * part of prescribed values (the host moved ke u0 to the load), which must be added, and loads on the held
+ * unknowns themselves, which must be subtracted. FETI_STATE if the body was not given by its elements, and
+ * if no solve has given an answer yet.
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) length of `r`: held unknowns 0 to n - 1 are read, also if the body has
- *                  more or fewer; at most the number of its unknowns, or of its held ones
- * @param[out] r    (n) force; 0 for a held unknown that no element has
- *
- * Safety: The array has the given shape.
+ * @param      n length of `r`: held unknowns 0 to n - 1 are read, also if the body has more or fewer; at
+ *               most the number of its unknowns, or of its held ones
+ * @param[out] r (n) force; 0 for a held unknown that no element has
  */
-int32_t feti_body_held_forces(struct feti_problem *p, int64_t body, int64_t n, double *r);
+int32_t feti_body_held_forces(feti_problem *p, int64_t body, int64_t n, double *r);
 
 /**
  * Reads the piece of every unknown of a body, for pictures and for choosing option `pieces`.
  *
- * Pieces count from 0. An unknown that belongs to several pieces gets the first one. If the body
- * is not cut, all numbers are 0. FETI_STATE before the matrix of the body, or all of its elements,
- * have been given. After a failure nothing is written.
+ * Pieces count from 0. An unknown that belongs to several pieces gets the first one. If the body is not
+ * cut, all numbers are 0. FETI_STATE before the matrix of the body, or all of its elements, have been
+ * given.
  *
- * @param[in]  p     (scalar) the handle
- * @param[in]  body  (scalar) number of the body, from 0
- * @param[in]  n     (scalar) unknowns of the body
  * @param[out] piece (n) piece of each unknown, from 0
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_body_pieces(struct feti_problem *p, int64_t body, int64_t n, int64_t *piece);
+int32_t feti_body_pieces(feti_problem *p, int64_t body, int64_t n, int64_t *piece);
 
-/*
- * Bodies by functions of the host
- * ===============================
- * Let the host solve with its own factorisation of K.
- */
+/* ==== Bodies by functions of the host ====
+ * Let the host solve with its own factorisation of K. */
 
 /**
  * A function of the host that multiplies by a matrix A that the host keeps: Y = A X.
  *
  * It returns 0 on success and any other number to report a failure. X and Y never overlap.
  *
- * @param[in]  user (scalar) the host's own data, as given to feti_body_operator; may be NULL
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
- * @param[in]  nrhs (scalar) columns of X and Y, 1 to 32
- * @param[in]  x    (ldx * nrhs) X, column-major, finite
- * @param[in]  ldx  (scalar) >= n
+ * @param      user the host's own data, as given to feti_body_operator; may be NULL
+ * @param      nrhs columns of X and Y, 1 to 32
+ * @param      x    (ldx * nrhs) X, column-major, finite
+ * @param      ldx  >= n
  * @param[out] y    (ldy * nrhs) Y, column-major; contains zeros on entry
- * @param[in]  ldy  (scalar) >= n
+ * @param      ldy  >= n
  */
-typedef int32_t (*feti_operator_fn)(void *user,
-                                    int64_t body,
-                                    int64_t n,
-                                    int64_t nrhs,
-                                    const double *x,
-                                    int64_t ldx,
-                                    double *y,
-                                    int64_t ldy);
+typedef int32_t (*feti_operator_fn)(void *user, int64_t body, int64_t n, int64_t nrhs, const double *x, int64_t ldx, double *y, int64_t ldy);
 
 /**
- * Registers the functions of the host that multiply by the stiffness K of a body and by a
- * generalised inverse K+ of K.
+ * Registers the functions of the host that multiply by the stiffness K of a body and by a generalised
+ * inverse K+ of K.
  *
- * The library sees only the diagonal of K, which it copies, and factorises nothing. K+ is any
- * symmetric positive semidefinite matrix with K K+ K = K. If K is not singular, K+ is its inverse.
- * Otherwise K+ may be the inverse of K with enough unknowns held (rows and columns of zeros in
- * K+), or the inverse of K plus a regularisation that acts only on the null space. The null space
- * must be given by feti_body_null_space or feti_body_coordinates; with coordinates the library
- * treats the body as connected. feti_setup tests the functions with a few fixed vectors and
- * refuses wrong functions with a specific status: FETI_CALLBACK (K or K+ is not symmetric, K K+ K
- * is not K, or a result is not finite), FETI_INDEFINITE, or FETI_NULL_SPACE (K R is not 0, or R
- * lacks a mode), with the measured value and its limit in the error detail.
+ * The library sees only the diagonal of K, which it copies, and factorises nothing. K+ is any symmetric
+ * positive semidefinite matrix with K K+ K = K. If K is not singular, K+ is its inverse. Otherwise K+ may
+ * be the inverse of K with enough unknowns held (rows and columns of zeros in K+), or the inverse of K
+ * plus a regularisation that acts only on the null space. The null space must be given by
+ * feti_body_null_space or feti_body_coordinates; with coordinates the library treats the body as
+ * connected. feti_setup tests the functions with a few fixed vectors and refuses wrong functions with a
+ * specific status: FETI_CALLBACK (K or K+ is not symmetric, K K+ K is not K, or a result is not finite),
+ * FETI_INDEFINITE, or FETI_NULL_SPACE (K R is not 0, or R lacks a mode), with the measured value and its
+ * limit in the error detail.
  *
- * If a function returns a number other than 0, the call that needed it ends with FETI_CALLBACK,
- * with the body and that number in the error detail; the problem is unchanged. The functions run
- * in the host's floating-point environment. With `concurrent` = 0 they run only on the thread that
- * called the library; with 1 several may run at once, also on threads of the library. Inside them,
- * calls on the same problem return FETI_BUSY, except feti_cancel and feti_problem_error. The
- * functions must not exit by longjmp or an exception, and must give bit-identical results for the
- * same X.
+ * If a function returns a number other than 0, the call that needed it ends with FETI_CALLBACK, with the
+ * body and that number in the error detail; the problem is unchanged. The functions run in the host's
+ * floating-point environment. With `concurrent` = 0 they run only on the thread that called the library;
+ * with 1 several may run at once, also on threads of the library. Inside them, calls on the same problem
+ * return FETI_BUSY, except feti_cancel and feti_problem_error. The functions must not exit by longjmp or
+ * an exception, and must give bit-identical results for the same X.
  *
- * Another call replaces the functions and everything computed with them; make this call whenever K
- * has changed. A stiffness matrix given later replaces the functions, and the functions replace a
- * matrix given earlier. After a failure the body keeps its previous matrix or functions.
+ * Another call replaces the functions and everything computed with them; make this call whenever K has
+ * changed. A stiffness matrix given later replaces the functions, and the functions replace a matrix given
+ * earlier.
  *
- * @param[in] p          (scalar) the handle
- * @param[in] body       (scalar) number of the body, from 0
- * @param[in] n          (scalar) unknowns of the body
- * @param[in] diag       (n) diagonal of K, >= 0, force per length; the library measures the body
- *                       by it
- * @param[in] kplus      (scalar) Y = K+ X, X force, Y length
- * @param[in] k          (scalar) Y = K X, X length, Y force
- * @param[in] concurrent (scalar) 0: only on the calling thread; 1: on any thread, several at once
- * @param[in] user       (scalar) passed to the functions unchanged; may be NULL
- *
- * Safety: `diag` has the given shape; the functions may be called with `user` until they are
- * replaced or the problem destroyed.
+ * @param diag       (n) diagonal of K, >= 0, force per length; the library measures the body by it
+ * @param kplus      Y = K+ X, X force, Y length
+ * @param k          Y = K X, X length, Y force
+ * @param concurrent 0: only on the calling thread; 1: on any thread, several at once
+ * @param user       passed to the functions unchanged; may be NULL
  */
-int32_t feti_body_operator(struct feti_problem *p,
-                           int64_t body,
-                           int64_t n,
-                           const double *diag,
-                           feti_operator_fn kplus,
-                           feti_operator_fn k,
-                           int32_t concurrent,
-                           void *user);
+int32_t feti_body_operator(feti_problem *p, int64_t body, int64_t n, const double *diag,
+                           feti_operator_fn kplus, feti_operator_fn k, int32_t concurrent, void *user);
 
-/*
- * Rows
- * ====
- * Say where bodies touch (B u <= c) and where they are joined (H u = h).
- */
+/* ==== Rows ====
+ * Say where bodies touch (B u <= c) and where they are joined (H u = h). */
 
-/**
- * Kind of rows: `B u <= c`.
- */
+/** Kind of rows: `B u <= c`. */
 #define FETI_INEQUALITY 1
-
-/**
- * Kind of rows: `H u = h`.
- */
+/** Kind of rows: `H u = h`. */
 #define FETI_EQUALITY 2
 
 /**
  * Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
  *
- * The rows are copied and numbered after the existing rows of the same kind. If a pair of body and
- * unknown occurs twice in a row, the entries are summed. A contact row with c = +infinity never
- * closes: it carries no force and joins no bodies, but it keeps its number, and feti_rows_rhs can
- * turn it on. FETI_STATE if `body` is NULL and some bodies have numbers of the host while others
- * have none. After a failure nothing is added.
+ * The rows are numbered after the existing rows of the same kind. If a pair of body and unknown occurs
+ * twice in a row, the entries are summed. A contact row with c = +infinity never closes: it carries no
+ * force and joins no bodies, but it keeps its number, and feti_rows_rhs can turn it on. FETI_STATE if
+ * `body` is NULL and some bodies have numbers of the host while others have none.
  *
- * @param[in]  p       (scalar) the handle
- * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in]  rows    (scalar) number of rows, 0 adds none
- * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
- *                     starts with `base`
- * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     is the host's number of the unknown (feti_body_numbering_i32) or, without
- *                     such numbers, counts the unknowns of all bodies consecutively
- * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
- * @param[in]  val     (row_ptr[rows] - base) entries of B or H
- * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
- * @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
- * @param[out] first   (scalar) number of the first row added, from 0; may be NULL
- *
- * Safety: The arrays have the given shapes.
+ * @param      kind    FETI_INEQUALITY or FETI_EQUALITY
+ * @param      rows    number of rows, 0 adds none
+ * @param      row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
+ *                     `base`
+ * @param      body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
+ *                     host's number of the unknown (feti_body_numbering_i32) or, without such numbers,
+ *                     counts the unknowns of all bodies consecutively
+ * @param      dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
+ * @param      val     (row_ptr[rows] - base) entries of B or H
+ * @param      base    0 or 1: what `row_ptr`, `body` and `dof` count from
+ * @param      rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
+ * @param[out] first   number of the first row added, from 0; may be NULL
  */
-int32_t feti_rows_add_i32(struct feti_problem *p,
-                          int32_t kind,
-                          int64_t rows,
-                          const int32_t *row_ptr,
-                          const int32_t *body,
-                          const int32_t *dof,
-                          const double *val,
-                          int32_t base,
-                          const double *rhs,
-                          int64_t *first);
+int32_t feti_rows_add_i32(feti_problem *p, int32_t kind, int64_t rows, const int32_t *row_ptr,
+                          const int32_t *body, const int32_t *dof, const double *val, int32_t base,
+                          const double *rhs, int64_t *first);
 
-/**
- * Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
- *
- * The rows are copied and numbered after the existing rows of the same kind. If a pair of body and
- * unknown occurs twice in a row, the entries are summed. A contact row with c = +infinity never
- * closes: it carries no force and joins no bodies, but it keeps its number, and feti_rows_rhs can
- * turn it on. FETI_STATE if `body` is NULL and some bodies have numbers of the host while others
- * have none. After a failure nothing is added.
- *
- * @param[in]  p       (scalar) the handle
- * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in]  rows    (scalar) number of rows, 0 adds none
- * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
- *                     starts with `base`
- * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     is the host's number of the unknown (feti_body_numbering_i32) or, without
- *                     such numbers, counts the unknowns of all bodies consecutively
- * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
- * @param[in]  val     (row_ptr[rows] - base) entries of B or H
- * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
- * @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
- * @param[out] first   (scalar) number of the first row added, from 0; may be NULL
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_rows_add_i64(struct feti_problem *p,
-                          int32_t kind,
-                          int64_t rows,
-                          const int64_t *row_ptr,
-                          const int64_t *body,
-                          const int64_t *dof,
-                          const double *val,
-                          int32_t base,
-                          const double *rhs,
-                          int64_t *first);
+/** As feti_rows_add_i32, with 64-bit indices. */
+int32_t feti_rows_add_i64(feti_problem *p, int32_t kind, int64_t rows, const int64_t *row_ptr,
+                          const int64_t *body, const int64_t *dof, const double *val, int32_t base,
+                          const double *rhs, int64_t *first);
 
 /**
  * Makes rows compliant: each becomes a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
  *
- * A contact row then carries the force k (B u - c) if this value is positive, which is a linear
- * law of pressure and overclosure. A compliant equality row is an elastic support or a cohesive
- * bond. Newly added rows are rigid, 1/k = 0. If a row is multiplied by t, its compliance is
- * multiplied by t^2. The numbers are copied and stay with their rows until they are replaced or
- * the rows are cleared. The factors of the bodies stay valid; the last answer is dropped. After a
- * failure all compliances are unchanged.
+ * A contact row then carries the force k (B u - c) if this value is positive, which is a linear law of
+ * pressure and overclosure. A compliant equality row is an elastic support or a cohesive bond. Newly added
+ * rows are rigid, 1/k = 0. If a row is multiplied by t, its compliance is multiplied by t^2. The numbers
+ * stay with their rows until they are replaced or the rows are cleared. The factors of the bodies stay
+ * valid; the last answer is dropped.
  *
- * @param[in] p     (scalar) the handle
- * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in] first (scalar) first row to change, from 0
- * @param[in] rows  (scalar) number of rows to change
- * @param[in] inv_k (rows) 1/k >= 0, length / force; 0: rigid
- *
- * Safety: The array has the given shape.
+ * @param kind  FETI_INEQUALITY or FETI_EQUALITY
+ * @param first first row to change, from 0
+ * @param rows  number of rows to change
+ * @param inv_k (rows) 1/k >= 0, length / force; 0: rigid
  */
-int32_t feti_rows_compliance(struct feti_problem *p,
-                             int32_t kind,
-                             int64_t first,
-                             int64_t rows,
-                             const double *inv_k);
+int32_t feti_rows_compliance(feti_problem *p, int32_t kind, int64_t first, int64_t rows, const double *inv_k);
 
 /**
  * Reads the current size of the problem.
  *
- * After a failure nothing is written.
- *
- * @param[in]  p      (scalar) the handle
- * @param[out] bodies (scalar) bodies; may be NULL
- * @param[out] dofs   (scalar) unknowns of all bodies; may be NULL
- * @param[out] rows   (scalar) inequality rows; may be NULL
- * @param[out] eqs    (scalar) equality rows; may be NULL
- *
- * Safety: Every pointer is NULL or has room for one number.
+ * @param[out] bodies bodies; may be NULL
+ * @param[out] dofs   unknowns of all bodies; may be NULL
+ * @param[out] rows   inequality rows; may be NULL
+ * @param[out] eqs    equality rows; may be NULL
  */
-int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int64_t *rows, int64_t *eqs);
+int32_t feti_counts(feti_problem *p, int64_t *bodies, int64_t *dofs, int64_t *rows, int64_t *eqs);
 
-/*
- * Friction
- * ========
- * Give contact rows tangential rows and a law of friction.
- */
+/* ==== Friction ====
+ * Give contact rows tangential rows and a law of friction. */
 
-/**
- * Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32,
- * feti_friction_add_i64).
- */
+/** Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32, feti_friction_add_i64). */
 #define FETI_TANGENTIAL 3
 
 /**
  * Adds nodes with friction, with 32-bit indices.
  *
- * A node has a normal row b_n, which is an existing contact row (feti_rows_add_i32,
- * feti_rows_add_i64), and dim tangential rows T, with dim = 1 in the plane and 2 in space. Its
- * tangential force lambda_t acts on the bodies as -T'lambda_t. Its slip is `s = T u - s_old - C_t
- * lambda_t`: the motion of the body with positive entries relative to the other body. The force is
- * bounded by |lambda_t| <= b with b = bound + coefficient lambda_n. The node either sticks, s = 0,
- * or slips in the direction of the force, `lambda_t = b s / |s|`, so that slip and force have the
- * same sign. Coefficient 0 gives Tresca friction, bound 0 gives Coulomb friction; `bound` also
- * acts at open nodes.
+ * A node has a normal row b_n, which is an existing contact row (feti_rows_add_i32, feti_rows_add_i64),
+ * and dim tangential rows T, with dim = 1 in the plane and 2 in space. Its tangential force lambda_t acts
+ * on the bodies as -T'lambda_t. Its slip is `s = T u - s_old - C_t lambda_t`: the motion of the body with
+ * positive entries relative to the other body. The force is bounded by |lambda_t| <= b with b = bound +
+ * coefficient lambda_n. The node either sticks, s = 0, or slips in the direction of the force, `lambda_t =
+ * b s / |s|`, so that slip and force have the same sign. Coefficient 0 gives Tresca friction, bound 0
+ * gives Coulomb friction; `bound` also acts at open nodes.
  *
- * If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential
- * rows by the same factor: lengths that differ by more than a factor of 1e3 are refused, unless
- * struck-out supports may have shortened a row. Tangential rows may be oblique, and may have no
- * entries. `normal_row` is the number of a contact row, never of an equality row, and each contact
- * row belongs to at most one node. If a pair of body and unknown occurs twice in a row, the
- * entries are summed. s_old and C_t start at zero (see feti_friction_reference and
- * feti_friction_compliance). The data are copied, and the nodes are numbered after the existing
- * nodes; all nodes have the same dim. The factors of the bodies stay valid; the last answer is
- * dropped. FETI_STATE if `body` is NULL and some bodies have numbers of the host while others have
- * none. After a failure nothing is added.
+ * If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential rows by
+ * the same factor: lengths that differ by more than a factor of 1e3 are refused, unless struck-out
+ * supports may have shortened a row. Tangential rows may be oblique, and may have no entries. `normal_row`
+ * is the number of a contact row, never of an equality row, and each contact row belongs to at most one
+ * node. If a pair of body and unknown occurs twice in a row, the entries are summed. s_old and C_t start
+ * at zero (see feti_friction_reference and feti_friction_compliance). The nodes are numbered after the
+ * existing nodes; all nodes have the same dim. The factors of the bodies stay valid; the last answer is
+ * dropped. FETI_STATE if `body` is NULL and some bodies have numbers of the host while others have none.
  *
- * @param[in]  p           (scalar) the handle
- * @param[in]  nodes       (scalar) number of nodes, 0 adds none
- * @param[in]  dim         (scalar) tangential rows of a node, 1 or 2
- * @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: no
- *                         contact row, only the bound acts
- * @param[in]  row_ptr     (dim * nodes + 1) tangential row i (dim rows per node) holds the entries
+ * @param      nodes       number of nodes, 0 adds none
+ * @param      dim         tangential rows of a node, 1 or 2
+ * @param      normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: no contact
+ *                         row, only the bound acts
+ * @param      row_ptr     (dim * nodes + 1) tangential row i (dim rows per node) holds the entries
  *                         `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
- * @param[in]  body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`;
- *                         NULL: `dof` is the host's number of the unknown
- *                         (feti_body_numbering_i32) or, without such numbers, counts the unknowns
- *                         of all bodies consecutively
- * @param[in]  dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
- * @param[in]  val         (row_ptr[dim * nodes] - base) entries of T
- * @param[in]  base        (scalar) 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count
- *                         from
- * @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; must be 0 without a
- *                         contact row; NULL: zeros
- * @param[in]  bound       (nodes) part of the bound that does not depend on the contact force, >=
- *                         0, force; NULL: zeros
- * @param[out] first       (scalar) number of the first node added, from 0; may be NULL
- *
- * Safety: The arrays have the given shapes.
+ * @param      body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`; NULL:
+ *                         `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without
+ *                         such numbers, counts the unknowns of all bodies consecutively
+ * @param      dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
+ * @param      val         (row_ptr[dim * nodes] - base) entries of T
+ * @param      base        0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count from
+ * @param      coefficient (nodes) coefficient of friction, >= 0, no unit; must be 0 without a contact row;
+ *                         NULL: zeros
+ * @param      bound       (nodes) part of the bound that does not depend on the contact force, >= 0,
+ *                         force; NULL: zeros
+ * @param[out] first       number of the first node added, from 0; may be NULL
  */
-int32_t feti_friction_add_i32(struct feti_problem *p,
-                              int64_t nodes,
-                              int32_t dim,
-                              const int32_t *normal_row,
-                              const int32_t *row_ptr,
-                              const int32_t *body,
-                              const int32_t *dof,
-                              const double *val,
-                              int32_t base,
-                              const double *coefficient,
-                              const double *bound,
-                              int64_t *first);
+int32_t feti_friction_add_i32(feti_problem *p, int64_t nodes, int32_t dim, const int32_t *normal_row,
+                              const int32_t *row_ptr, const int32_t *body, const int32_t *dof,
+                              const double *val, int32_t base, const double *coefficient,
+                              const double *bound, int64_t *first);
 
-/**
- * Adds nodes with friction, with 64-bit indices.
- *
- * A node has a normal row b_n, which is an existing contact row (feti_rows_add_i32,
- * feti_rows_add_i64), and dim tangential rows T, with dim = 1 in the plane and 2 in space. Its
- * tangential force lambda_t acts on the bodies as -T'lambda_t. Its slip is `s = T u - s_old - C_t
- * lambda_t`: the motion of the body with positive entries relative to the other body. The force is
- * bounded by |lambda_t| <= b with b = bound + coefficient lambda_n. The node either sticks, s = 0,
- * or slips in the direction of the force, `lambda_t = b s / |s|`, so that slip and force have the
- * same sign. Coefficient 0 gives Tresca friction, bound 0 gives Coulomb friction; `bound` also
- * acts at open nodes.
- *
- * If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential
- * rows by the same factor: lengths that differ by more than a factor of 1e3 are refused, unless
- * struck-out supports may have shortened a row. Tangential rows may be oblique, and may have no
- * entries. `normal_row` is the number of a contact row, never of an equality row, and each contact
- * row belongs to at most one node. If a pair of body and unknown occurs twice in a row, the
- * entries are summed. s_old and C_t start at zero (see feti_friction_reference and
- * feti_friction_compliance). The data are copied, and the nodes are numbered after the existing
- * nodes; all nodes have the same dim. The factors of the bodies stay valid; the last answer is
- * dropped. FETI_STATE if `body` is NULL and some bodies have numbers of the host while others have
- * none. After a failure nothing is added.
- *
- * @param[in]  p           (scalar) the handle
- * @param[in]  nodes       (scalar) number of nodes, 0 adds none
- * @param[in]  dim         (scalar) tangential rows of a node, 1 or 2
- * @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: no
- *                         contact row, only the bound acts
- * @param[in]  row_ptr     (dim * nodes + 1) tangential row i (dim rows per node) holds the entries
- *                         `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
- * @param[in]  body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`;
- *                         NULL: `dof` is the host's number of the unknown
- *                         (feti_body_numbering_i32) or, without such numbers, counts the unknowns
- *                         of all bodies consecutively
- * @param[in]  dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
- * @param[in]  val         (row_ptr[dim * nodes] - base) entries of T
- * @param[in]  base        (scalar) 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count
- *                         from
- * @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; must be 0 without a
- *                         contact row; NULL: zeros
- * @param[in]  bound       (nodes) part of the bound that does not depend on the contact force, >=
- *                         0, force; NULL: zeros
- * @param[out] first       (scalar) number of the first node added, from 0; may be NULL
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_friction_add_i64(struct feti_problem *p,
-                              int64_t nodes,
-                              int32_t dim,
-                              const int64_t *normal_row,
-                              const int64_t *row_ptr,
-                              const int64_t *body,
-                              const int64_t *dof,
-                              const double *val,
-                              int32_t base,
-                              const double *coefficient,
-                              const double *bound,
-                              int64_t *first);
+/** As feti_friction_add_i32, with 64-bit indices. */
+int32_t feti_friction_add_i64(feti_problem *p, int64_t nodes, int32_t dim, const int64_t *normal_row,
+                              const int64_t *row_ptr, const int64_t *body, const int64_t *dof,
+                              const double *val, int32_t base, const double *coefficient,
+                              const double *bound, int64_t *first);
 
 /**
  * Replaces the friction law of nodes: coefficients, bounds, or both.
  *
- * An argument that is NULL leaves its values unchanged. The numbers are copied. The factors of the
- * bodies and the last answer stay valid, with one exception: the answer is dropped if a node could
- * not carry a tangential force before the call and can after it, or the reverse. After a failure
- * all laws are unchanged.
+ * An argument that is NULL leaves its values unchanged. The factors of the bodies and the last answer stay
+ * valid, with one exception: the answer is dropped if a node could not carry a tangential force before the
+ * call and can after it, or the reverse.
  *
- * @param[in] p           (scalar) the handle
- * @param[in] first       (scalar) first node to change, from 0
- * @param[in] nodes       (scalar) number of nodes to change
- * @param[in] coefficient (nodes) coefficient of friction, >= 0, no unit; must be 0 without a
- *                        contact row; NULL: unchanged
- * @param[in] bound       (nodes) part of the bound that does not depend on the contact force, >=
- *                        0, force; NULL: unchanged
- *
- * Safety: The arrays have the given shapes.
+ * @param first       first node to change, from 0
+ * @param nodes       number of nodes to change
+ * @param coefficient (nodes) coefficient of friction, >= 0, no unit; must be 0 without a contact row;
+ *                    NULL: unchanged
+ * @param bound       (nodes) part of the bound that does not depend on the contact force, >= 0, force;
+ *                    NULL: unchanged
  */
-int32_t feti_friction_law(struct feti_problem *p,
-                          int64_t first,
-                          int64_t nodes,
-                          const double *coefficient,
+int32_t feti_friction_law(feti_problem *p, int64_t first, int64_t nodes, const double *coefficient,
                           const double *bound);
 
 /**
  * Makes sticking nodes elastic: `s = T u - s_old - C_t lambda_t` with C_t = 1/k_t.
  *
- * A sticking node then yields by C_t lambda_t. Newly added nodes are rigid, C_t = 0. If the rows
- * of a node are multiplied by t, its compliance is multiplied by t^2. The numbers are copied and
- * stay until they are replaced or the nodes are cleared. The factors of the bodies stay valid; the
- * last answer is dropped. After a failure all compliances are unchanged.
+ * A sticking node then yields by C_t lambda_t. Newly added nodes are rigid, C_t = 0. If the rows of a node
+ * are multiplied by t, its compliance is multiplied by t^2. The numbers stay until they are replaced or
+ * the nodes are cleared. The factors of the bodies stay valid; the last answer is dropped.
  *
- * @param[in] p      (scalar) the handle
- * @param[in] first  (scalar) first node to change, from 0
- * @param[in] nodes  (scalar) number of nodes to change
- * @param[in] inv_kt (nodes) 1/k_t >= 0, length / force, for all tangential rows of the node; 0:
- *                   rigid
- *
- * Safety: The array has the given shape.
+ * @param first  first node to change, from 0
+ * @param nodes  number of nodes to change
+ * @param inv_kt (nodes) 1/k_t >= 0, length / force, for all tangential rows of the node; 0: rigid
  */
-int32_t feti_friction_compliance(struct feti_problem *p, int64_t first, int64_t nodes, const double *inv_kt);
+int32_t feti_friction_compliance(feti_problem *p, int64_t first, int64_t nodes, const double *inv_kt);
 
 /**
- * Reads how many nodes with friction the problem has now, and how many tangential rows each of
- * them has.
+ * Reads how many nodes with friction the problem has now, and how many tangential rows each of them has.
  *
  * Also right after feti_problem_read: these are the sizes of the arrays of nodes, such as those of
- * feti_friction_slips and feti_friction_states. After a failure nothing is written.
+ * feti_friction_slips and feti_friction_states.
  *
- * @param[in]  p     (scalar) the handle
- * @param[out] nodes (scalar) nodes with friction; may be NULL
- * @param[out] dim   (scalar) tangential rows of a node, 1 or 2, 0 without nodes; may be NULL
- *
- * Safety: Every pointer is NULL or has room for one number.
+ * @param[out] nodes nodes with friction; may be NULL
+ * @param[out] dim   tangential rows of a node, 1 or 2, 0 without nodes; may be NULL
  */
-int32_t feti_friction_counts(struct feti_problem *p, int64_t *nodes, int32_t *dim);
+int32_t feti_friction_counts(feti_problem *p, int64_t *nodes, int32_t *dim);
 
-/*
- * Options
- * =======
- * Set tolerance, threads, method and limits, by name.
- */
+/* ==== Options ====
+ * Set tolerance, threads, method and limits, by name. */
 
-/**
- * Type of an option: number.
- */
+/** Type of an option: number. */
 #define FETI_OPTION_F64 1
-
-/**
- * Type of an option: integer.
- */
+/** Type of an option: integer. */
 #define FETI_OPTION_I64 2
-
-/**
- * Type of an option: text.
- */
+/** Type of an option: text. */
 #define FETI_OPTION_STR 3
 
-/**
- * An option: name, text, default and range.
- */
+/** An option: name, text, default and range. */
 typedef struct feti_option {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
+  /** Set by the caller: size of the struct in bytes. */
   int64_t struct_size;
-  /**
-   * FETI_OPTION_F64, FETI_OPTION_I64 or FETI_OPTION_STR.
-   */
+  /** FETI_OPTION_F64, FETI_OPTION_I64 or FETI_OPTION_STR. */
   int32_t type;
-  /**
-   * Zero.
-   */
+  /** Zero. */
   int32_t reserved;
-  /**
-   * Smallest value of a number or an integer.
-   */
+  /** Smallest value of a number or an integer. */
   double minimum;
-  /**
-   * Largest value of a number or an integer.
-   */
+  /** Largest value of a number or an integer. */
   double maximum;
-  /**
-   * Default of a number or an integer; NaN for a text.
-   */
+  /** Default of a number or an integer; NaN for a text. */
   double default_f64;
-  /**
-   * Default of an integer.
-   */
+  /** Default of an integer. */
   int64_t default_i64;
-  /**
-   * Name, static.
-   */
+  /** Name, static. */
   const char *name;
-  /**
-   * One sentence, static.
-   */
+  /** One sentence, static. */
   const char *doc;
-  /**
-   * Default of a text, static.
-   */
+  /** Default of a text, static. */
   const char *default_str;
 } feti_option;
 
 /**
  * Sets an option that is a number.
  *
- * The value stays valid until it is set again. After a failure the option is unchanged.
+ * The value stays valid until it is set again.
  *
- * @param[in] p     (scalar) the handle
- * @param[in] name  (text) a name of feti_option_at with type FETI_OPTION_F64
- * @param[in] value (scalar) within the range of the option
- *
- * Safety: `name` is NUL terminated.
+ * @param name  (text) a name of feti_option_at with type FETI_OPTION_F64
+ * @param value within the range of the option
  */
-int32_t feti_set_f64(struct feti_problem *p, const char *name, double value);
+int32_t feti_set_f64(feti_problem *p, const char *name, double value);
 
 /**
  * Sets an option that is an integer.
  *
- * The value stays valid until it is set again. After a failure the option is unchanged.
+ * The value stays valid until it is set again.
  *
- * @param[in] p     (scalar) the handle
- * @param[in] name  (text) a name of feti_option_at with type FETI_OPTION_I64
- * @param[in] value (scalar) within the range of the option
- *
- * Safety: `name` is NUL terminated.
+ * @param name  (text) a name of feti_option_at with type FETI_OPTION_I64
+ * @param value within the range of the option
  */
-int32_t feti_set_i64(struct feti_problem *p, const char *name, int64_t value);
+int32_t feti_set_i64(feti_problem *p, const char *name, int64_t value);
 
 /**
  * Sets an option that is a text.
  *
- * The text is copied and stays valid until it is set again. After a failure the option is
- * unchanged.
+ * The text is copied and stays valid until it is set again.
  *
- * @param[in] p     (scalar) the handle
- * @param[in] name  (text) a name of feti_option_at with type FETI_OPTION_STR
- * @param[in] value (text) one of the texts that the option accepts
- *
- * Safety: `name` and `value` are NUL terminated.
+ * @param name  (text) a name of feti_option_at with type FETI_OPTION_STR
+ * @param value (text) one of the texts that the option accepts
  */
-int32_t feti_set_str(struct feti_problem *p, const char *name, const char *value);
+int32_t feti_set_str(feti_problem *p, const char *name, const char *value);
 
 /**
  * Sets several options with one text, such as "tolerance=1e-8 threads=4".
  *
- * The text has items name = value of any type, separated by blanks, commas or line ends; a #
- * begins a comment that ends with the line. If an option occurs twice, the last value counts.
- * After a failure all options are unchanged; the error names the option, and `entry` of the error
- * detail is the position of the byte in the text, from 0.
+ * The text has items name = value of any type, separated by blanks, commas or line ends; a # begins a
+ * comment that ends with the line. If an option occurs twice, the last value counts. The error names the
+ * option, and `entry` of the error detail is the position of the byte in the text, from 0.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] text (text) the options
- *
- * Safety: `text` is NUL terminated.
+ * @param text (text) the options
  */
-int32_t feti_set_text(struct feti_problem *p, const char *text);
+int32_t feti_set_text(feti_problem *p, const char *text);
 
 /**
  * Reads an option that is a number.
  *
- * After a failure `value` is unchanged.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  name  (text) a name of feti_option_at with type FETI_OPTION_F64
- * @param[out] value (scalar) the current value
- *
- * Safety: `name` is NUL terminated, `value` has room for one number.
+ * @param      name  (text) a name of feti_option_at with type FETI_OPTION_F64
+ * @param[out] value the current value
  */
-int32_t feti_get_f64(struct feti_problem *p, const char *name, double *value);
+int32_t feti_get_f64(feti_problem *p, const char *name, double *value);
 
 /**
  * Reads an option that is an integer.
  *
- * After a failure `value` is unchanged.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  name  (text) a name of feti_option_at with type FETI_OPTION_I64
- * @param[out] value (scalar) the current value
- *
- * Safety: `name` is NUL terminated, `value` has room for one number.
+ * @param      name  (text) a name of feti_option_at with type FETI_OPTION_I64
+ * @param[out] value the current value
  */
-int32_t feti_get_i64(struct feti_problem *p, const char *name, int64_t *value);
+int32_t feti_get_i64(feti_problem *p, const char *name, int64_t *value);
 
 /**
  * Reads an option that is a text.
  *
- * The text is truncated to fit, and always NUL terminated if `cap` > 0. After a failure nothing is
- * written.
+ * The text is truncated to fit, and always NUL terminated if `cap` > 0.
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  name (text) a name of feti_option_at with type FETI_OPTION_STR
+ * @param      name (text) a name of feti_option_at with type FETI_OPTION_STR
  * @param[out] buf  (text) room for `cap` characters; NULL with `cap` = 0 asks for the length
- * @param[in]  cap  (scalar) characters in `buf`, >= 0
- * @param[out] len  (scalar) full length without the terminating zero
- *
- * Safety: `name` is NUL terminated, `buf` has room for `cap` characters, `len` for one number.
+ * @param      cap  characters in `buf`, >= 0
+ * @param[out] len  full length without the terminating zero
  */
-int32_t feti_get_str(struct feti_problem *p, const char *name, char *buf, int64_t cap, int64_t *len);
+int32_t feti_get_str(feti_problem *p, const char *name, char *buf, int64_t cap, int64_t *len);
 
 /**
  * Number of options.
@@ -1445,149 +880,89 @@ int64_t feti_option_count(void);
  * Describes an option: name, text, type, default and range.
  *
  * The texts are static. The caller sets `struct_size`; the library writes no more bytes than that.
- * After a failure nothing is written.
  *
- * @param[in]     k   (scalar) from 0, less than feti_option_count
- * @param[in,out] out (scalar) `struct_size` set, at least 16
- *
- * Safety: `out` points to `struct_size` writable bytes.
+ * @param         k   from 0, less than feti_option_count
+ * @param[in,out] out `struct_size` set, at least 16
  */
-int32_t feti_option_at(int64_t k, struct feti_option *out);
+int32_t feti_option_at(int64_t k, feti_option *out);
 
-/*
- * Solve
- * =====
- * Compute the answer and its accuracy.
- */
+/* ==== Solve ====
+ * Compute the answer and its accuracy. */
 
 /**
- * Report of a solve. If the call failed early, counts are zero and measured values are NaN. If
- * some groups of bodies have an answer and others have none, the counts of work, the energy and
- * the certificate cover only the groups with an answer.
+ * Report of a solve. If the call failed early, counts are zero and measured values are NaN. If some groups
+ * of bodies have an answer and others have none, the counts of work, the energy and the certificate cover
+ * only the groups with an answer.
  */
 typedef struct feti_info {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
+  /** Set by the caller: size of the struct in bytes. */
   int64_t struct_size;
-  /**
-   * What feti_solve returned: the worst status of all groups of bodies.
-   */
+  /** What feti_solve returned: the worst status of all groups of bodies. */
   int32_t status;
-  /**
-   * Zero.
-   */
+  /** Zero. */
   int32_t reserved;
-  /**
-   * Bodies.
-   */
+  /** Bodies. */
   int64_t bodies;
-  /**
-   * Unknowns of all bodies.
-   */
+  /** Unknowns of all bodies. */
   int64_t dofs;
-  /**
-   * Inequality rows.
-   */
+  /** Inequality rows. */
   int64_t rows;
-  /**
-   * Equality rows.
-   */
+  /** Equality rows. */
   int64_t equalities;
-  /**
-   * Dimension of the null spaces of all bodies.
-   */
+  /** Dimension of the null spaces of all bodies. */
   int64_t floating_modes;
-  /**
-   * Inequality rows that are closed in the answer.
-   */
+  /** Inequality rows that are closed in the answer. */
   int64_t active;
   /**
-   * Number of motions that neither loads nor rows determine; the answer is the one with the least
-   * sum of `K_ii u_i^2`.
+   * Number of motions that neither loads nor rows determine; the answer is the one with the least sum of
+   * `K_ii u_i^2`.
    */
   int64_t undetermined;
-  /**
-   * Steps of the active-set method.
-   */
+  /** Steps of the active-set method. */
   int64_t steps;
-  /**
-   * Steps of conjugate gradients on a face.
-   */
+  /** Steps of conjugate gradients on a face. */
   int64_t cg_steps;
-  /**
-   * Steps that reached a bound.
-   */
+  /** Steps that reached a bound. */
   int64_t expansions;
-  /**
-   * Steps that left a face.
-   */
+  /** Steps that left a face. */
   int64_t releases;
-  /**
-   * Products with the dual operator F.
-   */
+  /** Products with the dual operator F. */
   int64_t dual_applications;
-  /**
-   * Solutions of the coarse problem.
-   */
+  /** Solutions of the coarse problem. */
   int64_t coarse_solves;
-  /**
-   * Numeric factorisations for K+ since the problem was created; equal bodies share a factorisation.
-   */
+  /** Numeric factorisations for K+ since the problem was created; equal bodies share a factorisation. */
   int64_t factorisations;
-  /**
-   * Symbolic analyses since the problem was created; bodies with the same pattern share an analysis.
-   */
+  /** Symbolic analyses since the problem was created; bodies with the same pattern share an analysis. */
   int64_t analyses;
   /**
-   * Largest ratio of an entry of the certificate to its limit, over all bodies and rows with an
-   * answer; <= 1 passes.
+   * Largest ratio of an entry of the certificate to its limit, over all bodies and rows with an answer; <=
+   * 1 passes.
    */
   double worst;
-  /**
-   * Relative error of equilibrium of the worst body, as in feti_certificate.
-   */
+  /** Relative error of equilibrium of the worst body, as in feti_certificate. */
   double equilibrium;
-  /**
-   * Relative error of the balance of forces on the worst floating body.
-   */
+  /** Relative error of the balance of forces on the worst floating body. */
   double balance;
-  /**
-   * Relative penetration of the worst row.
-   */
+  /** Relative penetration of the worst row. */
   double penetration;
-  /**
-   * Relative error of the worst equality row.
-   */
+  /** Relative error of the worst equality row. */
   double equality;
-  /**
-   * Relative size of a force with the wrong sign, for the worst row.
-   */
+  /** Relative size of a force with the wrong sign, for the worst row. */
   double negative_force;
-  /**
-   * Relative error of complementarity of the worst row.
-   */
+  /** Relative error of complementarity of the worst row. */
   double complementarity;
-  /**
-   * Relative gap between primal and dual energy of the worst group of bodies.
-   */
+  /** Relative gap between primal and dual energy of the worst group of bodies. */
   double duality_gap;
   /**
    * Energy of the bodies, 1/2 u'Ku - f'u, plus energy of the springs of compliant rows, 1/2 lambda'C
    * lambda + 1/2 mu'C mu; force times length.
    */
   double energy;
-  /**
-   * Seconds for null spaces and factors.
-   */
+  /** Seconds for null spaces and factors. */
   double seconds_setup;
-  /**
-   * Seconds for the rest.
-   */
+  /** Seconds for the rest. */
   double seconds_solve;
-  /**
-   * Number of faces on which the dual problem was solved directly.
-   */
+  /** Number of faces on which the dual problem was solved directly. */
   int64_t direct_solves;
   /**
    * 1: a direct solve finished the answer (option finish); 0: a direct solve was not requested, not
@@ -1595,502 +970,358 @@ typedef struct feti_info {
    */
   int64_t finished;
   /**
-   * Columns of the dual operators of the bodies (one column for each body that a row touches)
-   * computed since the problem was created.
+   * Columns of the dual operators of the bodies (one column for each body that a row touches) computed
+   * since the problem was created.
    */
   int64_t columns_computed;
   /**
-   * Columns that were reused after a change of rows or bodies since the problem was created: those
-   * of bodies whose rows are unchanged, and, on bodies given as functions, those of rows that are
-   * unchanged.
+   * Columns that were reused after a change of rows or bodies since the problem was created: those of
+   * bodies whose rows are unchanged, and, on bodies given as functions, those of rows that are unchanged.
    */
   int64_t columns_kept;
-  /**
-   * Bodies whose dual operator is assembled (option dual_operator).
-   */
+  /** Bodies whose dual operator is assembled (option dual_operator). */
   int64_t explicit_operators;
-  /**
-   * Bodies whose dual operator is applied matrix-free.
-   */
+  /** Bodies whose dual operator is applied matrix-free. */
   int64_t implicit_operators;
-  /**
-   * Bytes of the factors of all bodies plus an upper bound for the work arrays of their computation.
-   */
+  /** Bytes of the factors of all bodies plus an upper bound for the work arrays of their computation. */
   int64_t factor_bytes;
-  /**
-   * Bytes of the assembled dual operators.
-   */
+  /** Bytes of the assembled dual operators. */
   int64_t operator_bytes;
-  /**
-   * Relative excess of a tangential force over its bound, for the worst node with friction.
-   */
+  /** Relative excess of a tangential force over its bound, for the worst node with friction. */
   double friction_cone;
   /**
    * Relative deficit of frictional work: where a node slips, its force is too small or has another
    * direction than the slip; for the worst node.
    */
   double friction_work;
-  /**
-   * Relative slip although the force is within its bound, for the worst node.
-   */
+  /** Relative slip although the force is within its bound, for the worst node. */
   double friction_stick;
-  /**
-   * Nodes with friction.
-   */
+  /** Nodes with friction. */
   int64_t nodes;
-  /**
-   * Nodes that stick in the answer.
-   */
+  /** Nodes that stick in the answer. */
   int64_t sticking;
-  /**
-   * Nodes that slip in the answer.
-   */
+  /** Nodes that slip in the answer. */
   int64_t slipping;
-  /**
-   * Newton steps of friction.
-   */
+  /** Newton steps of friction. */
   int64_t friction_steps;
-  /**
-   * Number of starts of the Newton method of friction, over all groups of bodies with friction.
-   */
+  /** Number of starts of the Newton method of friction, over all groups of bodies with friction. */
   int64_t friction_starts;
 } feti_info;
 
 /**
  * Prepares the solve: null spaces, factors of the bodies, the dual operator.
  *
- * feti_solve calls this function when necessary; called alone, it finds errors in the bodies
- * early. After a failure all data that was given is kept and can be corrected.
+ * feti_solve calls this function when necessary; called alone, it finds errors in the bodies early.
  *
- * FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of
- * a body is not the one that was given, or cannot be found; FETI_INDEFINITE if a matrix is
- * indefinite, with body, unknown and pivot or diagonal entry in the error detail;
- * FETI_GAPS_CONTRADICT if a row without entries has a right-hand side that 0 does not satisfy;
- * FETI_CALLBACK if a function of the host fails or violates its requirements (feti_body_operator);
- * FETI_UNSUPPORTED if fixing unknowns were given for a body with functions of the host instead of
- * a matrix; FETI_OVERFLOW if the square of a row, or a compliance times the largest K_ii,
- * overflows or underflows; FETI_CANCELLED if the host has cancelled.
- *
- * @param[in] p (scalar) the handle
+ * FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of a body
+ * is not the one that was given, or cannot be found; FETI_INDEFINITE if a matrix is indefinite, with body,
+ * unknown and pivot or diagonal entry in the error detail; FETI_GAPS_CONTRADICT if a row without entries
+ * has a right-hand side that 0 does not satisfy; FETI_CALLBACK if a function of the host fails or violates
+ * its requirements (feti_body_operator); FETI_UNSUPPORTED if fixing unknowns were given for a body with
+ * functions of the host instead of a matrix; FETI_OVERFLOW if the square of a row, or a compliance times
+ * the largest K_ii, overflows or underflows; FETI_CANCELLED if the host has cancelled.
  */
-int32_t feti_setup(struct feti_problem *p);
+int32_t feti_setup(feti_problem *p);
 
 /**
  * Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
  *
- * The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and
- * the other functions for results. An answer exists if the status is not negative, unless the call
- * was cancelled or ran out of time before the first step. `info` is written in any case, with NaN
- * for values that are unknown after a failure. After a failure all data that was given is kept and
- * can be corrected, except after FETI_INTERNAL. If rows and loads leave motions undetermined
- * (`undetermined`), the answer is the admissible one nearest to rest: the one with the least sum
- * of `K_ii u_i^2`.
+ * The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and the other
+ * functions for results. An answer exists if the status is not negative, unless the call was cancelled or
+ * ran out of time before the first step. `info` is written in any case, with NaN for values that are
+ * unknown after a failure. If rows and loads leave motions undetermined (`undetermined`), the answer is
+ * the admissible one nearest to rest: the one with the least sum of `K_ii u_i^2`.
  *
- * Groups of bodies that are not joined by a row with a finite gap are separate problems. Each
- * group is solved to its own accuracy, several at a time if threads are available. The function
- * returns the worst status of all groups; counts and energies are summed, and every entry of the
- * certificate is the one of the worst group. If a group has no answer because its load is not held
- * or its rows contradict each other, the status, feti_last_error and feti_diagnosis describe the
- * first such group. The other groups keep their answers, and `info` describes them. Reading a
- * result of one body in a group without an answer returns FETI_STATE; reading results of all
- * bodies or rows at once gives NaN for such a group, and feti_active gives FETI_ROW_UNKNOWN.
+ * Groups of bodies that are not joined by a row with a finite gap are separate problems. Each group is
+ * solved to its own accuracy, several at a time if threads are available. The function returns the worst
+ * status of all groups; counts and energies are summed, and every entry of the certificate is the one of
+ * the worst group. If a group has no answer because its load is not held or its rows contradict each
+ * other, the status, feti_last_error and feti_diagnosis describe the first such group. The other groups
+ * keep their answers, and `info` describes them. Reading a result of one body in a group without an answer
+ * returns FETI_STATE; reading results of all bodies or rows at once gives NaN for such a group, and
+ * feti_active gives FETI_ROW_UNKNOWN.
  *
- * A status above 0 comes with an answer, unless the call ended before the first step.
- * FETI_ITERATIONS at the limit of option max_steps; FETI_TIME at the limit of option time_limit,
- * which counts from the call and includes a setup that is due; FETI_CANCELLED if the host has
- * cancelled; FETI_STALLED if steps no longer reduce the error; FETI_INACCURATE if the certificate
- * does not pass; FETI_MARGINAL if a part of the load, below 1e-7 of it, is not held, or a body
- * moves far beyond its deformation (the log names it). With a status below 0 the group of bodies
- * concerned has no answer. FETI_LOAD_NOT_HELD if no contact force balances the load; FETI_SLIDES
- * if friction holds only a part of the load and no equilibrium was found; FETI_GAPS_CONTRADICT if
- * rows contradict each other; FETI_INDEFINITE if K has negative stiffness along a motion that
- * closed rows do not stop. feti_diagnosis has the proof of each. The call runs feti_setup when it
- * is due, and then fails for the same reasons.
+ * A status above 0 comes with an answer, unless the call ended before the first step. FETI_ITERATIONS at
+ * the limit of option max_steps; FETI_TIME at the limit of option time_limit, which counts from the call
+ * and includes a setup that is due; FETI_CANCELLED if the host has cancelled; FETI_STALLED if steps no
+ * longer reduce the error; FETI_INACCURATE if the certificate does not pass; FETI_MARGINAL if a part of
+ * the load, below 1e-7 of it, is not held, or a body moves far beyond its deformation (the log names it).
+ * With a status below 0 the group of bodies concerned has no answer. FETI_LOAD_NOT_HELD if no contact
+ * force balances the load; FETI_SLIDES if friction holds only a part of the load and no equilibrium was
+ * found; FETI_GAPS_CONTRADICT if rows contradict each other; FETI_INDEFINITE if K has negative stiffness
+ * along a motion that closed rows do not stop. feti_diagnosis has the proof of each. The call runs
+ * feti_setup when it is due, and then fails for the same reasons.
  *
- * @param[in]     p    (scalar) the handle
- * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
- *
- * Safety: `info` is NULL or points to `struct_size` writable bytes.
+ * @param[in,out] info `struct_size` set, at least 16; may be NULL
  */
-int32_t feti_solve(struct feti_problem *p, struct feti_info *info);
+int32_t feti_solve(feti_problem *p, feti_info *info);
 
 /**
  * Cancels the setup or the solve that is running on the problem.
  *
- * May be called from any thread and from a progress function, while another call on the problem
- * runs. The running call returns FETI_CANCELLED before the next product with the dual operator (in
- * the setup: before the next body, and inside the assembly of its dual operator). The results are
- * those of the last step; there are none if the call was cancelled before the first step. If no
- * call is running, this function has no effect: it does not cancel later setups and solves. In a
- * signal handler, set a flag instead and let the progress function check it.
- *
- * @param[in] p (scalar) the handle
+ * May be called from any thread and from a progress function, while another call on the problem runs. The
+ * running call returns FETI_CANCELLED before the next product with the dual operator (in the setup: before
+ * the next body, and inside the assembly of its dual operator). The results are those of the last step;
+ * there are none if the call was cancelled before the first step. If no call is running, this function has
+ * no effect: it does not cancel later setups and solves. In a signal handler, set a flag instead and let
+ * the progress function check it.
  */
-int32_t feti_cancel(struct feti_problem *p);
+int32_t feti_cancel(feti_problem *p);
 
-/*
- * Results
- * =======
- * Read displacements, forces, gaps and states.
- */
+/* ==== Results ====
+ * Read displacements, forces, gaps and states. */
 
-/**
- * State of a row: open; its force is zero.
- */
+/** State of a row: open; its force is zero. */
 #define FETI_ROW_OPEN 0
-
-/**
- * State of a row: closed; it carries a force.
- */
+/** State of a row: closed; it carries a force. */
 #define FETI_ROW_CLOSED 1
-
-/**
- * State of a row: closed, with a force that is zero within rounding error or has no clear sign.
- */
+/** State of a row: closed, with a force that is zero within rounding error or has no clear sign. */
 #define FETI_ROW_WEAK 2
-
-/**
- * State of a row: unknown, because the bodies that it touches are in a group without an answer.
- */
+/** State of a row: unknown, because the bodies that it touches are in a group without an answer. */
 #define FETI_ROW_UNKNOWN 3
-
-/**
- * State of a node with friction: open; the bound is zero and the node carries no tangential force.
- */
+/** State of a node with friction: open; the bound is zero and the node carries no tangential force. */
 #define FETI_FRICTION_OPEN 0
-
-/**
- * State of a node with friction: it sticks; its force is within the bound.
- */
+/** State of a node with friction: it sticks; its force is within the bound. */
 #define FETI_FRICTION_STICK 1
-
-/**
- * State of a node with friction: it slips in the direction of its force, which reaches the bound.
- */
+/** State of a node with friction: it slips in the direction of its force, which reaches the bound. */
 #define FETI_FRICTION_SLIP 2
-
 /**
- * State of a node with friction: its force equals the bound within rounding error, and the node
- * does not slip.
+ * State of a node with friction: its force equals the bound within rounding error, and the node does not
+ * slip.
  */
 #define FETI_FRICTION_WEAK 3
-
 /**
- * State of a node with friction: unknown, because the bodies that it touches are in a group
- * without an answer.
+ * State of a node with friction: unknown, because the bodies that it touches are in a group without an
+ * answer.
  */
 #define FETI_FRICTION_UNKNOWN 4
 
 /**
  * Reads the displacement of a body.
  *
- * FETI_ALL reads the displacements of all bodies. If the bodies have numbers of the host, the
- * array uses these numbers, and entries that belong to no unknown are left unchanged; otherwise it
- * gets one body after the other. Bodies in a group without an answer (feti_solve) get NaN.
- * FETI_STATE if no solve has given an answer yet, if the group of the body has no answer, and with
- * FETI_ALL if some bodies have numbers of the host and others have none. After a failure nothing
- * is written.
+ * FETI_ALL reads the displacements of all bodies. If the bodies have numbers of the host, the array uses
+ * these numbers, and entries that belong to no unknown are left unchanged; otherwise it gets one body
+ * after the other. Bodies in a group without an answer (feti_solve) get NaN. FETI_STATE if no solve has
+ * given an answer yet, if the group of the body has no answer, and with FETI_ALL if some bodies have
+ * numbers of the host and others have none.
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
- * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
- *                  or without numbers the unknowns of all bodies
+ * @param      body number of the body, from 0, or FETI_ALL
+ * @param      n    unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers
+ *                  the unknowns of all bodies
  * @param[out] u    (n) displacement, length
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, double *u);
+int32_t feti_displacement(feti_problem *p, int64_t body, int64_t n, double *u);
 
 /**
- * Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with
- * friction, node after node.
+ * Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with friction,
+ * node after node.
  *
  * Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get 0.
- * FETI_STATE if no solve has given an answer yet. After a failure nothing is written.
+ * FETI_STATE if no solve has given an answer yet.
  *
- * @param[in]  p      (scalar) the handle
- * @param[in]  kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
- * @param[in]  rows   (scalar) number of rows of the kind; for tangential rows dim times the number
- *                    of nodes
+ * @param      kind   FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
+ * @param      rows   number of rows of the kind; for tangential rows dim times the number of nodes
  * @param[out] lambda (rows) force, >= 0 for inequalities
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, double *lambda);
+int32_t feti_multipliers(feti_problem *p, int32_t kind, int64_t rows, double *lambda);
 
 /**
- * Reads the remaining gaps, c - B u; for compliant rows c + lambda/k - B u, which is 0 if they
- * carry a force.
+ * Reads the remaining gaps, c - B u; for compliant rows c + lambda/k - B u, which is 0 if they carry a
+ * force.
  *
- * Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get
- * +infinity. FETI_STATE if no solve has given an answer yet. After a failure nothing is written.
+ * Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get +infinity.
+ * FETI_STATE if no solve has given an answer yet.
  *
- * @param[in]  p     (scalar) the handle
- * @param[in]  rows  (scalar) number of inequality rows
+ * @param      rows  number of inequality rows
  * @param[out] slack (rows) open gap, length; negative: penetration
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
+int32_t feti_gaps(feti_problem *p, int64_t rows, double *slack);
 
 /**
- * Reads the state of the inequality rows, decided by what the certificate regards as zero at each
- * row.
+ * Reads the state of the inequality rows, decided by what the certificate regards as zero at each row.
  *
- * FETI_ROW_CLOSED means a force; FETI_ROW_OPEN means a gap and no force, or a row that never
- * closes; FETI_ROW_WEAK means neither a gap nor a force; FETI_ROW_UNKNOWN means that the bodies of
- * the row are in a group without an answer (feti_solve). FETI_STATE if no solve has given an
- * answer yet. After a failure nothing is written.
+ * FETI_ROW_CLOSED means a force; FETI_ROW_OPEN means a gap and no force, or a row that never closes;
+ * FETI_ROW_WEAK means neither a gap nor a force; FETI_ROW_UNKNOWN means that the bodies of the row are in
+ * a group without an answer (feti_solve). FETI_STATE if no solve has given an answer yet.
  *
- * @param[in]  p     (scalar) the handle
- * @param[in]  rows  (scalar) number of inequality rows
+ * @param      rows  number of inequality rows
  * @param[out] state (rows) FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK or FETI_ROW_UNKNOWN
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_active(struct feti_problem *p, int64_t rows, int32_t *state);
+int32_t feti_active(feti_problem *p, int64_t rows, int32_t *state);
 
 /**
- * Reads the force of the rows on a body: -B'lambda, -H'mu, -T'lambda_t, or the sum of all: `K u =
- * f + r`.
+ * Reads the force of the rows on a body: -B'lambda, -H'mu, -T'lambda_t, or the sum of all: `K u = f + r`.
  *
- * For a single kind the force comes from the host's rows only. If unknowns of several bodies share
- * a number (option glue), the sum of all kinds also includes the glue force that these bodies
- * exert on each other. With FETI_ALL the result is the sum over the bodies, in which the glue
- * forces cancel.
+ * For a single kind the force comes from the host's rows only. If unknowns of several bodies share a
+ * number (option glue), the sum of all kinds also includes the glue force that these bodies exert on each
+ * other. With FETI_ALL the result is the sum over the bodies, in which the glue forces cancel.
  *
- * FETI_ALL reads the forces on all bodies. If the bodies have numbers of the host, the array uses
- * these numbers, and entries that belong to no unknown are left unchanged; otherwise it gets one
- * body after the other. Entries on which rows act get NaN if the group of the body has no answer
- * (feti_solve). FETI_STATE if no solve has given an answer yet, if the group of the body has no
- * answer, and with FETI_ALL if some bodies have numbers of the host and others have none. After a
- * failure nothing is written.
+ * FETI_ALL reads the forces on all bodies. If the bodies have numbers of the host, the array uses these
+ * numbers, and entries that belong to no unknown are left unchanged; otherwise it gets one body after the
+ * other. Entries on which rows act get NaN if the group of the body has no answer (feti_solve). FETI_STATE
+ * if no solve has given an answer yet, if the group of the body has no answer, and with FETI_ALL if some
+ * bodies have numbers of the host and others have none.
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
- * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
- * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
- *                  or without numbers the unknowns of all bodies
+ * @param      kind FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
+ * @param      body number of the body, from 0, or FETI_ALL
+ * @param      n    unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers
+ *                  the unknowns of all bodies
  * @param[out] r    (n) force
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_reaction(struct feti_problem *p, int32_t kind, int64_t body, int64_t n, double *r);
+int32_t feti_reaction(feti_problem *p, int32_t kind, int64_t body, int64_t n, double *r);
 
 /**
- * Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R
- * alpha`.
+ * Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R alpha`.
  *
- * FETI_STATE if no solve has given an answer yet, and if the group of the body has no answer
- * (feti_solve). After a failure nothing is written.
+ * FETI_STATE if no solve has given an answer yet, and if the group of the body has no answer (feti_solve).
  *
- * @param[in]  p     (scalar) the handle
- * @param[in]  body  (scalar) number of the body, from 0
- * @param[in]  r     (scalar) dimension of the null space of the body
+ * @param      r     dimension of the null space of the body
  * @param[out] alpha (r) amplitudes, in the order of the columns of feti_body_null_space_get
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double *alpha);
+int32_t feti_amplitudes(feti_problem *p, int64_t body, int64_t r, double *alpha);
 
 /**
- * Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t`, with the s_old of that
- * solve.
+ * Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t`, with the s_old of that solve.
  *
- * A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). Nodes on
- * bodies in a group without an answer (feti_solve) get NaN. FETI_STATE if no solve has given an
- * answer yet. After a failure nothing is written.
+ * A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). Nodes on bodies in a
+ * group without an answer (feti_solve) get NaN. FETI_STATE if no solve has given an answer yet.
  *
- * @param[in]  p     (scalar) the handle
- * @param[in]  nodes (scalar) number of nodes with friction
- * @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; ignored if there are no nodes
+ * @param      nodes number of nodes with friction
+ * @param      dim   tangential rows of a node, 1 or 2; ignored if there are no nodes
  * @param[out] slip  (dim * nodes) node after node, length
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_friction_slips(struct feti_problem *p, int64_t nodes, int32_t dim, double *slip);
+int32_t feti_friction_slips(feti_problem *p, int64_t nodes, int32_t dim, double *slip);
 
 /**
- * Reads the states of the nodes in the last answer, decided by what the certificate regards as
- * zero at each node.
+ * Reads the states of the nodes in the last answer, decided by what the certificate regards as zero at
+ * each node.
  *
- * FETI_FRICTION_OPEN means only that the bound is zero: a node with `bound` > 0 sticks or slips
- * even if its contact is open; FETI_FRICTION_STICK means a force within the bound;
- * FETI_FRICTION_SLIP means a slip in the direction of a force that reaches the bound;
- * FETI_FRICTION_WEAK means a force that reaches the bound without a slip, within rounding error;
- * FETI_FRICTION_UNKNOWN means that the bodies of the node are in a group without an answer
- * (feti_solve). FETI_STATE if no solve has given an answer yet. After a failure nothing is
- * written.
+ * FETI_FRICTION_OPEN means only that the bound is zero: a node with `bound` > 0 sticks or slips even if
+ * its contact is open; FETI_FRICTION_STICK means a force within the bound; FETI_FRICTION_SLIP means a slip
+ * in the direction of a force that reaches the bound; FETI_FRICTION_WEAK means a force that reaches the
+ * bound without a slip, within rounding error; FETI_FRICTION_UNKNOWN means that the bodies of the node are
+ * in a group without an answer (feti_solve). FETI_STATE if no solve has given an answer yet.
  *
- * @param[in]  p     (scalar) the handle
- * @param[in]  nodes (scalar) number of nodes with friction
+ * @param      nodes number of nodes with friction
  * @param[out] state (nodes) FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP,
  *                   FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_friction_states(struct feti_problem *p, int64_t nodes, int32_t *state);
+int32_t feti_friction_states(feti_problem *p, int64_t nodes, int32_t *state);
 
-/*
- * Load steps
- * ==========
- * Continue with other loads and gaps; friction starts from the slips of the last step.
- */
+/* ==== Load steps ====
+ * Continue with other loads and gaps; friction starts from the slips of the last step. */
 
 /**
  * Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
  *
- * c = +infinity turns a contact row off, and a finite c turns it on again. Either change drops the
- * last answer; the factors of the bodies stay valid. The numbers are copied. After a failure all
- * right-hand sides are unchanged.
+ * c = +infinity turns a contact row off, and a finite c turns it on again. Either change drops the last
+ * answer; the factors of the bodies stay valid.
  *
- * @param[in] p     (scalar) the handle
- * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in] first (scalar) first row to change, from 0
- * @param[in] rows  (scalar) number of rows to change
- * @param[in] rhs   (rows) c or h, length; c may be +infinity
- *
- * Safety: The array has the given shape.
+ * @param kind  FETI_INEQUALITY or FETI_EQUALITY
+ * @param first first row to change, from 0
+ * @param rows  number of rows to change
+ * @param rhs   (rows) c or h, length; c may be +infinity
  */
-int32_t feti_rows_rhs(struct feti_problem *p, int32_t kind, int64_t first, int64_t rows, const double *rhs);
+int32_t feti_rows_rhs(feti_problem *p, int32_t kind, int64_t first, int64_t rows, const double *rhs);
 
 /**
- * Ends a load step: sets s_old to `T u - C_t lambda_t` of the last answer at every node, including
- * open nodes.
+ * Ends a load step: sets s_old to `T u - C_t lambda_t` of the last answer at every node, including open
+ * nodes.
  *
- * Call this function when a load step is accepted, before or after you give the loads of the next
- * step. The answer with its slips is unchanged, and so are the start values of the next solve. A
- * second call has no further effect. To be able to return to an earlier step, save the state
- * before the call (feti_state_save). FETI_STATE if no solve has given an answer yet, if a group of
- * bodies has no answer, and if the answer is not certified (a status of feti_solve other than
- * FETI_OK and FETI_MARGINAL). After a failure s_old is unchanged.
- *
- * @param[in] p (scalar) the handle
+ * Call this function when a load step is accepted, before or after you give the loads of the next step.
+ * The answer with its slips is unchanged, and so are the start values of the next solve. A second call has
+ * no further effect. To be able to return to an earlier step, save the state before the call
+ * (feti_state_save). FETI_STATE if no solve has given an answer yet, if a group of bodies has no answer,
+ * and if the answer is not certified (a status of feti_solve other than FETI_OK and FETI_MARGINAL).
  */
-int32_t feti_friction_commit(struct feti_problem *p);
+int32_t feti_friction_commit(feti_problem *p);
 
 /**
- * Gives s_old, the reference from which slips are measured: T u - C_t lambda_t at the beginning of
- * the load step.
+ * Gives s_old, the reference from which slips are measured: T u - C_t lambda_t at the beginning of the
+ * load step.
  *
- * Newly added nodes have s_old = 0; feti_friction_commit takes s_old from the answer. A host that
- * solves for the increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied.
- * The factors of the bodies stay valid, and the last answer keeps its slips. After a failure all
- * s_old are unchanged.
+ * Newly added nodes have s_old = 0; feti_friction_commit takes s_old from the answer. A host that solves
+ * for the increment of a Newton iteration gives T (u_begin - u_k). The factors of the bodies stay valid,
+ * and the last answer keeps its slips.
  *
- * @param[in] p     (scalar) the handle
- * @param[in] first (scalar) first node to change, from 0
- * @param[in] nodes (scalar) number of nodes to change
- * @param[in] dim   (scalar) tangential rows of a node, 1 or 2; ignored if there are no nodes
- * @param[in] s_old (dim * nodes) node after node, length; rows without entries slip by minus this
- *
- * Safety: The array has the given shape.
+ * @param first first node to change, from 0
+ * @param nodes number of nodes to change
+ * @param dim   tangential rows of a node, 1 or 2; ignored if there are no nodes
+ * @param s_old (dim * nodes) node after node, length; rows without entries slip by minus this
  */
-int32_t feti_friction_reference(struct feti_problem *p,
-                                int64_t first,
-                                int64_t nodes,
-                                int32_t dim,
+int32_t feti_friction_reference(feti_problem *p, int64_t first, int64_t nodes, int32_t dim,
                                 const double *s_old);
 
 /**
  * Gives start values for the next solve.
  *
- * The next solve starts from these multipliers, regardless of option start. They are used once,
- * whatever the outcome; every other solve starts as the option says. Rows with a zero start
- * without a force, so the multipliers also carry over the contact state of an earlier answer. A
- * kind of rows without start values starts from zero. A change of rows or bodies drops the start
- * values. After a failure the earlier start values stay valid.
+ * The next solve starts from these multipliers, regardless of option start. They are used once, whatever
+ * the outcome; every other solve starts as the option says. Rows with a zero start without a force, so the
+ * multipliers also carry over the contact state of an earlier answer. A kind of rows without start values
+ * starts from zero. A change of rows or bodies drops the start values.
  *
- * @param[in] p      (scalar) the handle
- * @param[in] kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
- * @param[in] rows   (scalar) number of rows of the kind; for tangential rows dim times the number
- *                   of nodes
- * @param[in] lambda (rows) force; a negative value for an inequality counts as zero
- *
- * Safety: The array has the given shape.
+ * @param kind   FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
+ * @param rows   number of rows of the kind; for tangential rows dim times the number of nodes
+ * @param lambda (rows) force; a negative value for an inequality counts as zero
  */
-int32_t feti_start_from(struct feti_problem *p, int32_t kind, int64_t rows, const double *lambda);
+int32_t feti_start_from(feti_problem *p, int32_t kind, int64_t rows, const double *lambda);
 
-/*
- * Newton's method
- * ===============
- * Give new matrices and new rows to an existing problem.
- */
+/* ==== Newton's method ====
+ * Give new matrices and new rows to an existing problem. */
 
 /**
- * Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or
- * _i64.
+ * Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or _i64.
  *
- * The values are copied and checked like the first ones. The library keeps the symbolic analysis,
- * so the next setup costs only a numeric factorisation of this body; bit-identical values cost
- * nothing. The storage is the one of the first call. FETI_STATE if the matrix has not been given,
- * or was given in another form. After a failure the body keeps its previous values.
+ * The values are copied and checked like the first ones. The library keeps the symbolic analysis, so the
+ * next setup costs only a numeric factorisation of this body; bit-identical values cost nothing. The
+ * storage is the one of the first call. FETI_STATE if the matrix has not been given, or was given in
+ * another form.
  *
- * Borrowed values (FETI_BORROW) are not copied: `val` is either the borrowed array, which the host
- * has rewritten, or another array that replaces it. The values count as changed, also for other
- * bodies that borrow the same array. After a failure with the same array the body has no matrix
- * until it gets other values.
+ * Borrowed values (FETI_BORROW) are not copied: `val` is either the borrowed array, which the host has
+ * rewritten, or another array that replaces it. The values count as changed, also for other bodies that
+ * borrow the same array. After a failure with the same array the body has no matrix until it gets other
+ * values.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] nnz  (scalar) number of values, as in the first call
- * @param[in] val  (nnz) entries of K in the order of the first call, force per length
- *
- * Safety: The array has the given shape.
+ * @param nnz number of values, as in the first call
+ * @param val (nnz) entries of K in the order of the first call, force per length
  */
-int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, const double *val);
+int32_t feti_body_values(feti_problem *p, int64_t body, int64_t nnz, const double *val);
 
 /**
  * Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
  *
- * The call works like feti_body_values, for a matrix with a separate diagonal. FETI_STATE if the
- * matrix has not been given, or was given in another form. After a failure the body keeps its
- * previous values.
+ * The call works like feti_body_values, for a matrix with a separate diagonal. FETI_STATE if the matrix
+ * has not been given, or was given in another form.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] n    (scalar) unknowns of the body
- * @param[in] diag (n) K_ii, force per length
- * @param[in] nnz  (scalar) number of off-diagonal values, as in the first call
- * @param[in] val  (nnz) off-diagonal entries of K in the order of the first call, force per length
- *
- * Safety: The arrays have the given shapes.
+ * @param diag (n) K_ii, force per length
+ * @param nnz  number of off-diagonal values, as in the first call
+ * @param val  (nnz) off-diagonal entries of K in the order of the first call, force per length
  */
-int32_t feti_body_values_split(struct feti_problem *p,
-                               int64_t body,
-                               int64_t n,
-                               const double *diag,
-                               int64_t nnz,
+int32_t feti_body_values_split(feti_problem *p, int64_t body, int64_t n, const double *diag, int64_t nnz,
                                const double *val);
 
 /**
  * Gives new values for a dense stiffness matrix.
  *
- * The matrix is copied and checked like the first one, in the same storage. If all zeros stay
- * zero, the library keeps the symbolic analysis. FETI_STATE if the matrix has not been given, or
- * was given in another form. After a failure the body keeps its previous matrix.
+ * The matrix is copied and checked like the first one, in the same storage. If all zeros stay zero, the
+ * library keeps the symbolic analysis. FETI_STATE if the matrix has not been given, or was given in
+ * another form.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] n    (scalar) unknowns of the body
- * @param[in] k    (ld * n) column-major: K_ij is k[i + ld j], force per length
- * @param[in] ld   (scalar) >= n
- *
- * Safety: The array has the given shape.
+ * @param k  (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param ld >= n
  */
-int32_t feti_body_values_dense(struct feti_problem *p, int64_t body, int64_t n, const double *k, int64_t ld);
+int32_t feti_body_values_dense(feti_problem *p, int64_t body, int64_t n, const double *k, int64_t ld);
 
 /**
  * Removes all rows of a kind.
  *
- * The numbering of that kind starts again at 0. Removing the inequality rows also removes all
- * nodes with friction (feti_friction_clear), because they refer to contact rows. The factors of
- * the bodies stay valid.
+ * The numbering of that kind starts again at 0. Removing the inequality rows also removes all nodes with
+ * friction (feti_friction_clear), because they refer to contact rows. The factors of the bodies stay
+ * valid.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] kind (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param kind FETI_INEQUALITY or FETI_EQUALITY
  */
-int32_t feti_rows_clear(struct feti_problem *p, int32_t kind);
+int32_t feti_rows_clear(feti_problem *p, int32_t kind);
 
 /**
  * Removes all nodes with friction; their contact rows stay.
@@ -2098,122 +1329,81 @@ int32_t feti_rows_clear(struct feti_problem *p, int32_t kind);
  * The numbering starts again at 0, and new nodes may have another dim. feti_rows_clear with
  * FETI_INEQUALITY also removes the nodes. The factors of the bodies stay valid; the last answer is
  * dropped.
- *
- * @param[in] p (scalar) the handle
  */
-int32_t feti_friction_clear(struct feti_problem *p);
+int32_t feti_friction_clear(feti_problem *p);
 
-/*
- * Saved states
- * ============
- * Save a step and go back to it.
- */
+/* ==== Saved states ====
+ * Save a step and go back to it. */
 
 /**
  * Saves loads, rows, friction, multipliers and the contact state under a number.
  *
- * For nodes with friction the state has the laws, the compliances and s_old. Factors are not
- * copied and the entries of the rows are shared, so a state costs no more memory than its vectors.
- * A state exists until it is dropped or the problem is destroyed; its number is never used again.
- * After a failure nothing is saved.
+ * For nodes with friction the state has the laws, the compliances and s_old. Factors are not copied and
+ * the entries of the rows are shared, so a state costs no more memory than its vectors. A state exists
+ * until it is dropped or the problem is destroyed; its number is never used again.
  *
- * @param[in]  p  (scalar) the handle
- * @param[out] id (scalar) number of the state, from 0
- *
- * Safety: `id` has room for one number.
+ * @param[out] id number of the state, from 0
  */
-int32_t feti_state_save(struct feti_problem *p, int64_t *id);
+int32_t feti_state_save(feti_problem *p, int64_t *id);
 
 /**
  * Goes back to a saved state, for example after a rejected load step.
  *
- * The call restores loads, rows with right-hand sides and compliances, and nodes with friction
- * with laws and s_old. It also restores the answer unless a matrix or the rows have changed since
- * the state was saved. With option start = previous the next solve continues from the saved
- * multipliers; with start = cold it gives the same bits as it would have given at the time of
- * saving. Matrices, null spaces and options keep their current values; unused start values are
- * dropped. The state stays saved. FETI_STATE if bodies were added since the state was saved; after
- * a failure nothing is changed.
+ * The call restores loads, rows with right-hand sides and compliances, and nodes with friction with laws
+ * and s_old. It also restores the answer unless a matrix or the rows have changed since the state was
+ * saved. With option start = previous the next solve continues from the saved multipliers; with start =
+ * cold it gives the same bits as it would have given at the time of saving. Matrices, null spaces and
+ * options keep their current values; unused start values are dropped. The state stays saved. FETI_STATE if
+ * bodies were added since the state was saved; after a failure nothing is changed.
  *
- * @param[in] p  (scalar) the handle
- * @param[in] id (scalar) number of the state
+ * @param id number of the state, from 0
  */
-int32_t feti_state_restore(struct feti_problem *p, int64_t id);
+int32_t feti_state_restore(feti_problem *p, int64_t id);
 
 /**
- * Drops a saved state. After a failure nothing is dropped.
+ * Drops a saved state.
  *
- * @param[in] p  (scalar) the handle
- * @param[in] id (scalar) number of the state
+ * @param id number of the state, from 0
  */
-int32_t feti_state_drop(struct feti_problem *p, int64_t id);
+int32_t feti_state_drop(feti_problem *p, int64_t id);
 
-/*
- * Diagnosis
- * =========
- * Find out why there is no answer, and what is unusual about the problem.
- */
+/* ==== Diagnosis ====
+ * Find out why there is no answer, and what is unusual about the problem. */
 
-/**
- * What the last solve, or the last failed setup, found out about the problem. Numbers count from
- * 0.
- */
+/** What the last solve, or the last failed setup, found out about the problem. Numbers count from 0. */
 typedef struct feti_findings {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
+  /** Set by the caller: size of the struct in bytes. */
   int64_t struct_size;
-  /**
-   * Status of that solve or setup.
-   */
+  /** Status of that solve or setup. */
   int32_t status;
-  /**
-   * Kind of `row` after a contradiction, FETI_INEQUALITY or FETI_EQUALITY; 0: none.
-   */
+  /** Kind of `row` after a contradiction, FETI_INEQUALITY or FETI_EQUALITY; 0: none. */
   int32_t kind;
-  /**
-   * Body that escapes or was refused, in the first group of bodies that ended with this status; -1:
-   * none.
-   */
+  /** Body that escapes or was refused, in the first group of bodies that ended with this status; -1: none. */
   int64_t body;
-  /**
-   * Connected part that escapes, if the body has several parts; -1: does not apply.
-   */
+  /** Connected part that escapes, if the body has several parts; -1: does not apply. */
   int64_t component;
-  /**
-   * Unknown of the body that moves fastest or was refused; -1: none.
-   */
+  /** Unknown of the body that moves fastest or was refused; -1: none. */
   int64_t dof;
   /**
-   * After FETI_GAPS_CONTRADICT the row with the largest weight, otherwise a row that was refused;
-   * -1: none.
+   * After FETI_GAPS_CONTRADICT the row with the largest weight, otherwise a row that was refused; -1:
+   * none.
    */
   int64_t row;
-  /**
-   * Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
-   */
+  /** Rows of both kinds that contradict each other; feti_diagnosis_rows lists them. */
   int64_t rows_involved;
-  /**
-   * Number of rigid body motions that neither loads nor rows determine.
-   */
+  /** Number of rigid body motions that neither loads nor rows determine. */
   int64_t undetermined;
-  /**
-   * Rows of both kinds that repeat the direction of another one.
-   */
+  /** Rows of both kinds that repeat the direction of another one. */
   int64_t redundant_rows;
-  /**
-   * Bodies that no row touches.
-   */
+  /** Bodies that no row touches. */
   int64_t untouched_bodies;
-  /**
-   * The first of these bodies; -1: none.
-   */
+  /** The first of these bodies; -1: none. */
   int64_t untouched_body;
   /**
-   * Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE with a motion
-   * of negative stiffness: 1 - 1 / rho, where rho is the ratio of the negative stiffness to the
-   * stiffness of the closed rows. After FETI_LOAD_NOT_HELD: the fraction of the resultant load that
-   * nothing holds. After FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise NaN.
+   * Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE with a motion of
+   * negative stiffness: 1 - 1 / rho, where rho is the ratio of the negative stiffness to the stiffness of
+   * the closed rows. After FETI_LOAD_NOT_HELD: the fraction of the resultant load that nothing holds.
+   * After FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise NaN.
    */
   double margin;
   /**
@@ -2228,428 +1418,275 @@ typedef struct feti_findings {
    */
   double unheld;
   /**
-   * Bodies with motions that perhaps only the rounding of the entries of K resists; feti_body_info
-   * gives the number of such motions.
+   * Bodies with motions that perhaps only the rounding of the entries of K resists; feti_body_info gives
+   * the number of such motions.
    */
   int64_t doubtful_bodies;
-  /**
-   * The first of these bodies; -1: none.
-   */
+  /** The first of these bodies; -1: none. */
   int64_t doubtful_body;
   /**
    * Bodies with rigid body motions of small positive or negative stiffness, because of weak springs,
    * rounding or geometric stiffness.
    */
   int64_t soft_bodies;
-  /**
-   * The first of these bodies; -1: none.
-   */
+  /** The first of these bodies; -1: none. */
   int64_t soft_body;
-  /**
-   * After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN.
-   */
+  /** After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN. */
   double capacity;
 } feti_findings;
 
 /**
  * Reads what the last solve, or the last failed setup, found out about the problem.
  *
- * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES:
- * the body that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the
- * rows that contradict each other. If several groups of bodies have no answer, the findings
- * describe the first of them. After FETI_INDEFINITE, FETI_NULL_SPACE and similar statuses: the
- * body and the unknown. With an answer: undetermined motions, redundant rows, and bodies that no
- * row touches. The findings are kept until the next solve or the next failed setup. FETI_STATE
- * before the first solve or failed setup. After a failure nothing is written.
+ * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES: the body
+ * that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the rows that
+ * contradict each other. If several groups of bodies have no answer, the findings describe the first of
+ * them. After FETI_INDEFINITE, FETI_NULL_SPACE and similar statuses: the body and the unknown. With an
+ * answer: undetermined motions, redundant rows, and bodies that no row touches. The findings are kept
+ * until the next solve or the next failed setup. FETI_STATE before the first solve or failed setup.
  *
- * @param[in]     p   (scalar) the handle
- * @param[in,out] out (scalar) `struct_size` set, at least 16
- *
- * Safety: `out` points to `struct_size` writable bytes.
+ * @param[in,out] out `struct_size` set, at least 16
  */
-int32_t feti_diagnosis(struct feti_problem *p, struct feti_findings *out);
+int32_t feti_diagnosis(feti_problem *p, feti_findings *out);
 
 /**
  * Reads the motion of every unknown of a body in the rigid body motion that escapes.
  *
- * The load does work on this motion, and no row resists it. The motion is scaled so that its
- * largest entry over all bodies is 1; bodies that do not move have zeros. After FETI_SLIDES it is
- * the motion that friction does not hold, and after FETI_INDEFINITE the motion with negative
- * stiffness that closed rows do not stop. FETI_STATE unless the last solve ended with one of these
- * statuses and found a motion. After a failure nothing is written.
+ * The load does work on this motion, and no row resists it. The motion is scaled so that its largest entry
+ * over all bodies is 1; bodies that do not move have zeros. After FETI_SLIDES it is the motion that
+ * friction does not hold, and after FETI_INDEFINITE the motion with negative stiffness that closed rows do
+ * not stop. FETI_STATE unless the last solve ended with one of these statuses and found a motion.
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
- * @param[out] v    (n) length, up to a factor
- *
- * Safety: The array has the given shape.
+ * @param[out] v (n) length, up to a factor
  */
-int32_t feti_diagnosis_motion(struct feti_problem *p, int64_t body, int64_t n, double *v);
+int32_t feti_diagnosis_motion(feti_problem *p, int64_t body, int64_t n, double *v);
 
 /**
- * Lists the rows of one kind that contradict each other, with their weights, or without a
- * contradiction the redundant rows.
+ * Lists the rows of one kind that contradict each other, with their weights, or without a contradiction
+ * the redundant rows.
  *
- * The weights w, scaled to a largest weight of 1, prove a contradiction: over the rows b of both
- * kinds the sum of w b is 0 and the sum of w c is negative, with w > 0 for inequalities. If
- * unknowns with the same number are glued (option glue), the sum of w b is 0 for each number, and
- * feti_last_error names some of these numbers. The weight of a redundant row is its factor
- * relative to the row that it repeats. FETI_STATE before the first solve. After a failure nothing
- * is written.
+ * The weights w, scaled to a largest weight of 1, prove a contradiction: over the rows b of both kinds the
+ * sum of w b is 0 and the sum of w c is negative, with w > 0 for inequalities. If unknowns with the same
+ * number are glued (option glue), the sum of w b is 0 for each number, and feti_last_error names some of
+ * these numbers. The weight of a redundant row is its factor relative to the row that it repeats.
+ * FETI_STATE before the first solve.
  *
- * @param[in]  p      (scalar) the handle
- * @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in]  cap    (scalar) capacity of `row` and `weight`
- * @param[out] count  (scalar) number of rows found; as many as fit are written
+ * @param      kind   FETI_INEQUALITY or FETI_EQUALITY
+ * @param      cap    capacity of `row` and `weight`
+ * @param[out] count  number of rows found; as many as fit are written
  * @param[out] row    (cap) numbers from 0, ascending; may be NULL
  * @param[out] weight (cap) no unit; may be NULL
- *
- * Safety: `count` has room for one number, `row` and `weight` are NULL or have room for `cap`
- * numbers.
  */
-int32_t feti_diagnosis_rows(struct feti_problem *p,
-                            int32_t kind,
-                            int64_t cap,
-                            int64_t *count,
-                            int64_t *row,
+int32_t feti_diagnosis_rows(feti_problem *p, int32_t kind, int64_t cap, int64_t *count, int64_t *row,
                             double *weight);
 
 /**
- * Lists the equality rows that are linear combinations of the other equality rows; this call
- * computes them.
+ * Lists the equality rows that are linear combinations of the other equality rows; this call computes
+ * them.
  *
  * These rows add no constraint, and the distribution of forces among them is not unique.
  * feti_diagnosis_rows lists the rows that repeat another row. FETI_STATE before the first setup.
- * After a failure nothing is written.
  *
- * @param[in]  p     (scalar) the handle
- * @param[in]  cap   (scalar) capacity of `row`
- * @param[out] count (scalar) number of rows found; as many as fit are written
+ * @param      cap   capacity of `row`
+ * @param[out] count number of rows found; as many as fit are written
  * @param[out] row   (cap) numbers from 0, ascending; may be NULL
- *
- * Safety: `count` has room for one number, `row` is NULL or has room for `cap` numbers.
  */
-int32_t feti_diagnosis_dependent(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *row);
+int32_t feti_diagnosis_dependent(feti_problem *p, int64_t cap, int64_t *count, int64_t *row);
 
 /**
  * Lists the bodies that no row touched in the last solve, or in the last failed setup.
  *
- * Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a
- * failure nothing is written.
+ * Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve.
  *
- * @param[in]  p     (scalar) the handle
- * @param[in]  cap   (scalar) capacity of `body`
- * @param[out] count (scalar) number of bodies found; as many as fit are written
+ * @param      cap   capacity of `body`
+ * @param[out] count number of bodies found; as many as fit are written
  * @param[out] body  (cap) numbers from 0, ascending; may be NULL
- *
- * Safety: `count` has room for one number, `body` is NULL or has room for `cap` numbers.
  */
-int32_t feti_diagnosis_untouched(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *body);
+int32_t feti_diagnosis_untouched(feti_problem *p, int64_t cap, int64_t *count, int64_t *body);
 
 /**
  * Reads a rigid body motion that the last answer leaves undetermined: the body and its motion.
  *
- * `undetermined` of feti_findings is the number of these motions. Bodies that are not connected
- * appear in separate motions. FETI_STATE without an answer. After a failure nothing is written.
+ * `undetermined` of feti_findings is the number of these motions. Bodies that are not connected appear in
+ * separate motions. FETI_STATE without an answer.
  *
- * @param[in]  p      (scalar) the handle
- * @param[in]  k      (scalar) number of the motion, from 0
- * @param[out] body   (scalar) number of the body that moves fastest, from 0; may be NULL
- * @param[out] motion (6) motion of this body: velocity of the origin, rotation about the axes; NaN
- *                    without coordinates; may be NULL
- *
- * Safety: The arrays have the given shapes.
+ * @param      k      number of the motion, from 0
+ * @param[out] body   number of the body that moves fastest, from 0; may be NULL
+ * @param[out] motion (6) motion of this body: velocity of the origin, rotation about the axes; NaN without
+ *                    coordinates; may be NULL
  */
-int32_t feti_diagnosis_undetermined(struct feti_problem *p, int64_t k, int64_t *body, double *motion);
+int32_t feti_diagnosis_undetermined(feti_problem *p, int64_t k, int64_t *body, double *motion);
 
 /**
  * Reads the motion of every unknown of a body in a rigid body motion that the last answer leaves
  * undetermined.
  *
- * The motion is scaled so that its largest entry over all bodies is 1; bodies that do not move
- * have zeros. FETI_STATE without an answer. After a failure nothing is written.
+ * The motion is scaled so that its largest entry over all bodies is 1; bodies that do not move have zeros.
+ * FETI_STATE without an answer.
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  k    (scalar) number of the motion, from 0
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
- * @param[out] v    (n) length, up to a factor
- *
- * Safety: The array has the given shape.
+ * @param      k number of the motion, from 0
+ * @param[out] v (n) length, up to a factor
  */
-int32_t feti_diagnosis_undetermined_motion(struct feti_problem *p,
-                                           int64_t k,
-                                           int64_t body,
-                                           int64_t n,
-                                           double *v);
+int32_t feti_diagnosis_undetermined_motion(feti_problem *p, int64_t k, int64_t body, int64_t n, double *v);
 
-/*
- * Facts on bodies
- * ===============
- * Read size, memory and null space of a body, and the time of each phase.
- */
+/* ==== Facts on bodies ====
+ * Read size, memory and null space of a body, and the time of each phase. */
 
-/**
- * Source of a null space: vectors of the host that span it (FETI_EXACT), or soft motions
- * (FETI_SOFT).
- */
+/** Source of a null space: vectors of the host that span it (FETI_EXACT), or soft motions (FETI_SOFT). */
 #define FETI_ORIGIN_EXACT 1
-
-/**
- * Source of a null space: selected from vectors of the host (FETI_CANDIDATES).
- */
+/** Source of a null space: selected from vectors of the host (FETI_CANDIDATES). */
 #define FETI_ORIGIN_CANDIDATES 2
-
-/**
- * Source of a null space: selected from the rigid body motions that the coordinates give.
- */
+/** Source of a null space: selected from the rigid body motions that the coordinates give. */
 #define FETI_ORIGIN_COORDINATES 3
-
-/**
- * Source of a null space: computed from K alone.
- */
+/** Source of a null space: computed from K alone. */
 #define FETI_ORIGIN_FOUND 4
 
 /**
- * Facts on the input of a body and on the results of its last setup; facts that are not known yet
- * are -1 or NaN.
+ * Facts on the input of a body and on the results of its last setup; facts that are not known yet are -1
+ * or NaN.
  */
 typedef struct feti_body_facts {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
+  /** Set by the caller: size of the struct in bytes. */
   int64_t struct_size;
-  /**
-   * Unknowns.
-   */
+  /** Unknowns. */
   int64_t unknowns;
   /**
-   * Entries of K as the host gave them, including a separate diagonal; for a dense matrix all
-   * entries of the storage.
+   * Entries of K as the host gave them, including a separate diagonal; for a dense matrix all entries of
+   * the storage.
    */
   int64_t entries;
-  /**
-   * Connected parts of K.
-   */
+  /** Connected parts of K. */
   int64_t components;
-  /**
-   * Bytes that the library keeps for K.
-   */
+  /** Bytes that the library keeps for K. */
   int64_t matrix_bytes;
-  /**
-   * Arrays of K that are borrowed from the host (FETI_BORROW): 0 none, 1 values, 2 values and
-   * columns.
-   */
+  /** Arrays of K that are borrowed from the host (FETI_BORROW): 0 none, 1 values, 2 values and columns. */
   int64_t borrowed;
-  /**
-   * Source of the null space: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
-   */
+  /** Source of the null space: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND. */
   int64_t origin;
-  /**
-   * Dimension of the null space.
-   */
+  /** Dimension of the null space. */
   int64_t null_space;
-  /**
-   * Entries of the factor.
-   */
+  /** Entries of the factor. */
   int64_t factor_entries;
-  /**
-   * Bytes of the factor plus an upper bound for the work arrays of its computation.
-   */
+  /** Bytes of the factor plus an upper bound for the work arrays of its computation. */
   int64_t factor_bytes;
-  /**
-   * The first other body that shares the factor, from 0; -1: none.
-   */
+  /** The first other body that shares the factor, from 0; -1: none. */
   int64_t shared_with;
-  /**
-   * 1: the dual operator is assembled; 0: it is applied matrix-free.
-   */
+  /** 1: the dual operator is assembled; 0: it is applied matrix-free. */
   int64_t explicit_operator;
-  /**
-   * Bytes of the assembled dual operator.
-   */
+  /** Bytes of the assembled dual operator. */
   int64_t operator_bytes;
   /**
-   * If the library found the null space: ratio of the stiffness of the softest motion outside it to
-   * the stiffness of the stiffest motion in it; otherwise NaN.
+   * If the library found the null space: ratio of the stiffness of the softest motion outside it to the
+   * stiffness of the stiffest motion in it; otherwise NaN.
    */
   double gap;
   /**
-   * Estimated relative error of the forces on the body in the last answer; NaN if its group of
-   * bodies has no answer.
+   * Estimated relative error of the forces on the body in the last answer; NaN if its group of bodies has
+   * no answer.
    */
   double force_error;
   /**
-   * Number of motions treated as free although K resists them, by no more than rounding of its
-   * entries can cause; -1 before a setup.
+   * Number of motions treated as free although K resists them, by no more than rounding of its entries can
+   * cause; -1 before a setup.
    */
   int64_t soft_free;
   /**
-   * Number of motions treated as supported although perhaps only rounding of the entries of K
-   * resists them. If it is above 0, give the null space, or K with more digits. -1 before a setup.
+   * Number of motions treated as supported although perhaps only rounding of the entries of K resists
+   * them. If it is above 0, give the null space, or K with more digits. -1 before a setup.
    */
   int64_t soft_held;
-  /**
-   * Stiffness of these motions: the largest v'K v over v'diag(K) v; NaN without such motions.
-   */
+  /** Stiffness of these motions: the largest v'K v over v'diag(K) v; NaN without such motions. */
   double softness;
-  /**
-   * The stiffness that rounding of the entries can cause; NaN without such motions.
-   */
+  /** The stiffness that rounding of the entries can cause; NaN without such motions. */
   double softness_of_rounding;
   /**
-   * Number of pieces that the body is cut into, known when all elements have been given; 1 if the
-   * body is not cut.
+   * Number of pieces that the body is cut into, known when all elements have been given; 1 if the body is
+   * not cut.
    */
   int64_t pieces;
 } feti_body_facts;
 
-/**
- * Time and memory of a phase of a setup or a solve.
- */
+/** Time and memory of a phase of a setup or a solve. */
 typedef struct feti_phase {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
+  /** Set by the caller: size of the struct in bytes. */
   int64_t struct_size;
-  /**
-   * Bytes of the data that the phase computed and keeps; 0: not counted.
-   */
+  /** Bytes of the data that the phase computed and keeps; 0: not counted. */
   int64_t bytes;
-  /**
-   * Wall time in the last setup or solve, seconds.
-   */
+  /** Wall time in the last setup or solve, seconds. */
   double seconds;
-  /**
-   * Name, static.
-   */
+  /** Name, static. */
   const char *name;
 } feti_phase;
 
 /**
  * Reads what is known about a body: its matrix, its null space, its factor and its dual operator.
  *
- * This call computes nothing except the connected parts. After a failure nothing is written.
+ * This call computes nothing except the connected parts.
  *
- * @param[in]     p    (scalar) the handle
- * @param[in]     body (scalar) number of the body, from 0
- * @param[in,out] out  (scalar) `struct_size` set, at least 16
- *
- * Safety: `out` points to `struct_size` writable bytes.
+ * @param[in,out] out `struct_size` set, at least 16
  */
-int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_facts *out);
+int32_t feti_body_info(feti_problem *p, int64_t body, feti_body_facts *out);
 
 /**
  * Reads the connected part of every unknown of a body.
  *
- * A body may have several parts that no nonzero entry of K couples. The parts are numbered from 0
- * in the order of their first unknowns. FETI_STATE before the stiffness matrix is given. After a
- * failure nothing is written.
+ * A body may have several parts that no nonzero entry of K couples. The parts are numbered from 0 in the
+ * order of their first unknowns. FETI_STATE before the stiffness matrix is given.
  *
- * @param[in]  p         (scalar) the handle
- * @param[in]  body      (scalar) number of the body, from 0
- * @param[in]  n         (scalar) unknowns of the body
  * @param[out] component (n) part of each unknown, from 0
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_body_components(struct feti_problem *p, int64_t body, int64_t n, int64_t *component);
+int32_t feti_body_components(feti_problem *p, int64_t body, int64_t n, int64_t *component);
 
 /**
  * Number of phases of a setup and a solve.
  *
- * After a failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[out] count (scalar) the number of phases
- *
- * Safety: `count` has room for one number.
+ * @param[out] count the number of phases
  */
-int32_t feti_phase_count(struct feti_problem *p, int64_t *count);
+int32_t feti_phase_count(feti_problem *p, int64_t *count);
 
 /**
- * Reads time and memory of a phase. The phases are rows, null spaces, analysis, factorisation,
- * dual operators, preconditioner, dual solve, recovery, in this order.
+ * Reads time and memory of a phase. The phases are rows, null spaces, analysis, factorisation, dual
+ * operators, preconditioner, dual solve, recovery, in this order.
  *
- * The times refer to the last setup or solve, even if it failed; a phase without work has time
- * zero. Later solves do not repeat what a setup keeps. After a failure nothing is written.
+ * The times refer to the last setup or solve, even if it failed; a phase without work has time zero. Later
+ * solves do not repeat what a setup keeps.
  *
- * @param[in]     p   (scalar) the handle
- * @param[in]     k   (scalar) from 0, less than feti_phase_count
- * @param[in,out] out (scalar) `struct_size` set, at least 16
- *
- * Safety: `out` points to `struct_size` writable bytes.
+ * @param         k   from 0, less than feti_phase_count
+ * @param[in,out] out `struct_size` set, at least 16
  */
-int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out);
+int32_t feti_phase_at(feti_problem *p, int64_t k, feti_phase *out);
 
-/*
- * Progress and log
- * ================
- * Follow the progress of a setup or a solve.
- */
+/* ==== Progress and log ====
+ * Follow the progress of a setup or a solve. */
 
-/**
- * Phase that feti_on_progress reports: a part of the setup is done.
- */
+/** Phase that feti_on_progress reports: a part of the setup is done. */
 #define FETI_PHASE_SETUP 1
-
-/**
- * Phase that feti_on_progress reports: a step of the dual method is done.
- */
+/** Phase that feti_on_progress reports: a step of the dual method is done. */
 #define FETI_PHASE_SOLVE 2
-
-/**
- * Kind of a step: conjugate gradients on the face.
- */
+/** Kind of a step: conjugate gradients on the face. */
 #define FETI_STEP_CONJUGATE_GRADIENT 1
-
-/**
- * Kind of a step: rows lost their force (expansion of the face).
- */
+/** Kind of a step: rows lost their force (expansion of the face). */
 #define FETI_STEP_EXPANSION 2
-
-/**
- * Kind of a step: rows gained a force (release from the face).
- */
+/** Kind of a step: rows gained a force (release from the face). */
 #define FETI_STEP_RELEASE 3
-
-/**
- * Kind of a step: a direction of the Newton method for friction.
- */
+/** Kind of a step: a direction of the Newton method for friction. */
 #define FETI_STEP_NEWTON 4
-
-/**
- * Level of a log: nothing.
- */
+/** Level of a log: nothing. */
 #define FETI_LOG_NONE 0
-
-/**
- * Level of a log: one line for each solve, and warnings.
- */
+/** Level of a log: one line for each solve, and warnings. */
 #define FETI_LOG_RESULT 1
-
-/**
- * Level of a log: also the problem and the method, and a line for each phase.
- */
+/** Level of a log: also the problem and the method, and a line for each phase. */
 #define FETI_LOG_PHASE 2
-
-/**
- * Level of a log: also a line for each step.
- */
+/** Level of a log: also a line for each step. */
 #define FETI_LOG_STEP 3
 
-/**
- * Progress of a setup or a solve.
- */
+/** Progress of a setup or a solve. */
 typedef struct feti_progress {
-  /**
-   * Size of the struct in bytes, set by the library.
-   */
+  /** Size of the struct in bytes, set by the library. */
   int64_t struct_size;
   /**
-   * FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the
-   * preconditioner has been computed, or half a second has passed) or FETI_PHASE_SOLVE.
+   * FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner has
+   * been computed, or half a second has passed) or FETI_PHASE_SOLVE.
    */
   int32_t phase;
   /**
@@ -2657,198 +1694,140 @@ typedef struct feti_progress {
    * FETI_STEP_NEWTON; 0 in the setup.
    */
   int32_t step;
-  /**
-   * Steps so far.
-   */
+  /** Steps so far. */
   int64_t steps;
-  /**
-   * Products with the dual operator F so far.
-   */
+  /** Products with the dual operator F so far. */
   int64_t products;
-  /**
-   * Inequality rows with a force.
-   */
+  /** Inequality rows with a force. */
   int64_t active;
   /**
-   * Norm of the projected gradient divided by the norm at which the solve stops; NaN in the setup,
-   * like the next three entries.
+   * Norm of the projected gradient divided by the norm at which the solve stops; NaN in the setup, like
+   * the next three entries.
    */
   double residual;
-  /**
-   * Norm of its part on rows with a force, divided by the same norm.
-   */
+  /** Norm of its part on rows with a force, divided by the same norm. */
   double residual_free;
-  /**
-   * Norm of its part on rows that have no force but need one, divided by the same norm.
-   */
+  /** Norm of its part on rows that have no force but need one, divided by the same norm. */
   double residual_chopped;
-  /**
-   * Dual functional 1/2 lambda'F lambda - lambda'd, force times length; every step lowers it.
-   */
+  /** Dual functional 1/2 lambda'F lambda - lambda'd, force times length; every step lowers it. */
   double theta;
-  /**
-   * Seconds since the call began, also in the setup.
-   */
+  /** Seconds since the call began, also in the setup. */
   double seconds;
-  /**
-   * Estimated fraction of the setup that is done, from 0 to 1; it never decreases; NaN in the solve.
-   */
+  /** Estimated fraction of the setup that is done, from 0 to 1; it never decreases; NaN in the solve. */
   double fraction;
 } feti_progress;
 
 /**
- * A function of the host that is called for every body in every part of a setup and for every step
- * of a solve.
+ * A function of the host that is called for every body in every part of a setup and for every step of a
+ * solve.
  *
  * It returns 0 to continue, a number > 0 to cancel, or a number < 0 to report a failure.
  *
- * @param[in] user (scalar) the host's own data, as given to feti_on_progress; may be NULL
- * @param[in] now  (scalar) valid during the call
+ * @param user the host's own data, as given to feti_on_progress; may be NULL
+ * @param now  valid during the call
  */
-typedef int32_t (*feti_progress_fn)(void *user, const struct feti_progress *now);
+typedef int32_t (*feti_progress_fn)(void *user, const feti_progress *now);
 
 /**
  * A function of the host that receives a line of text.
  *
  * It returns 0 to continue and any other number to report a failure.
  *
- * @param[in] user  (scalar) the host's own data, as given to feti_on_log; may be NULL
- * @param[in] level (scalar) FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
- * @param[in] text  (text) one line in UTF-8 without a line end, valid during the call
+ * @param user  the host's own data, as given to feti_on_log; may be NULL
+ * @param level FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+ * @param text  (text) one line in UTF-8 without a line end, valid during the call
  */
 typedef int32_t (*feti_log_fn)(void *user, int32_t level, const char *text);
 
 /**
- * Registers the function that is called for every body in every part of a setup, and for every
- * step of a solve.
+ * Registers the function that is called for every body in every part of a setup, and for every step of a
+ * solve.
  *
- * During a setup on several threads the function is also called when half a second has passed
- * without such an event. It runs on the thread that called the library, in the floating-point
- * environment of that thread, and stays registered until another function or NULL is given. It
- * returns 0 to continue. A number > 0 ends the call with FETI_CANCELLED and the results of the
- * last step; a number < 0 ends the call with FETI_CALLBACK, the number in the error detail, and no
- * results. Inside the function, calls on the same problem return FETI_BUSY, except feti_cancel and
- * feti_problem_error; other problems may be used. The function must not exit by longjmp or an
- * exception.
+ * During a setup on several threads the function is also called when half a second has passed without such
+ * an event. It runs on the thread that called the library, in the floating-point environment of that
+ * thread, and stays registered until another function or NULL is given. It returns 0 to continue. A number
+ * > 0 ends the call with FETI_CANCELLED and the results of the last step; a number < 0 ends the call with
+ * FETI_CALLBACK, the number in the error detail, and no results. Inside the function, calls on the same
+ * problem return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used. The
+ * function must not exit by longjmp or an exception.
  *
- * @param[in] p        (scalar) the handle
- * @param[in] callback (scalar) the function; NULL: none
- * @param[in] user     (scalar) passed to the function unchanged; may be NULL
- *
- * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+ * @param callback the function; NULL: none
+ * @param user     passed to the function unchanged; may be NULL
  */
-int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void *user);
+int32_t feti_on_progress(feti_problem *p, feti_progress_fn callback, void *user);
 
 /**
  * Registers the function that receives the log of setups and solves, line by line.
  *
- * Level FETI_LOG_RESULT: one line for each solve, and warnings. FETI_LOG_PHASE: also sizes,
- * options, method, fallbacks and a line for each phase with its time and bytes; also the progress
- * of a long first feasible point, projection, nearest point or certificate, with the first line
- * after a second at most and further lines whenever a tenth of the time so far has passed.
- * FETI_LOG_STEP: also a line for each step. The function runs on the thread that called the
- * library, in the floating-point environment of that thread, and stays registered until another
- * function or NULL is given. It returns 0 to continue; any other number ends the call with
- * FETI_CALLBACK, the number in the error detail, and no results. Inside the function, calls on the
- * same problem return FETI_BUSY, except feti_cancel and feti_problem_error. The function must not
- * exit by longjmp or an exception.
+ * Level FETI_LOG_RESULT: one line for each solve, and warnings. FETI_LOG_PHASE: also sizes, options,
+ * method, fallbacks and a line for each phase with its time and bytes; also the progress of a long first
+ * feasible point, projection, nearest point or certificate, with the first line after a second at most and
+ * further lines whenever a tenth of the time so far has passed. FETI_LOG_STEP: also a line for each step.
+ * The function runs on the thread that called the library, in the floating-point environment of that
+ * thread, and stays registered until another function or NULL is given. It returns 0 to continue; any
+ * other number ends the call with FETI_CALLBACK, the number in the error detail, and no results. Inside
+ * the function, calls on the same problem return FETI_BUSY, except feti_cancel and feti_problem_error. The
+ * function must not exit by longjmp or an exception.
  *
- * @param[in] p        (scalar) the handle
- * @param[in] callback (scalar) the function; NULL: none
- * @param[in] level    (scalar) FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
- * @param[in] user     (scalar) passed to the function unchanged; may be NULL
- *
- * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+ * @param callback the function; NULL: none
+ * @param level    FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+ * @param user     passed to the function unchanged; may be NULL
  */
-int32_t feti_on_log(struct feti_problem *p, feti_log_fn callback, int32_t level, void *user);
+int32_t feti_on_log(feti_problem *p, feti_log_fn callback, int32_t level, void *user);
 
-/*
- * Validation
- * ==========
- * Check an answer of this or another program; multiply by the operators of the method.
- */
+/* ==== Validation ====
+ * Check an answer of this or another program; multiply by the operators of the method. */
 
 /**
- * Verdict on an answer, with one entry for each condition. Each entry is `limit` times the ratio
- * of the violation at the worst body or row to the allowed violation, which includes rounding; an
- * entry passes if it is at most `limit`.
+ * Verdict on an answer, with one entry for each condition. Each entry is `limit` times the ratio of the
+ * violation at the worst body or row to the allowed violation, which includes rounding; an entry passes if
+ * it is at most `limit`.
  */
 typedef struct feti_certificate {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
+  /** Set by the caller: size of the struct in bytes. */
   int64_t struct_size;
-  /**
-   * 1: every entry passes.
-   */
+  /** 1: every entry passes. */
   int32_t passed;
-  /**
-   * Zero.
-   */
+  /** Zero. */
   int32_t reserved;
-  /**
-   * Option certificate_tolerance.
-   */
+  /** Option certificate_tolerance. */
   double limit;
-  /**
-   * Largest ratio of an entry to its limit; <= 1 passes.
-   */
+  /** Largest ratio of an entry to its limit; <= 1 passes. */
   double worst;
-  /**
-   * Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, for the worst body.
-   */
+  /** Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, for the worst body. */
   double equilibrium;
-  /**
-   * Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, for the worst floating
-   * body.
-   */
+  /** Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, for the worst floating body. */
   double balance;
   /**
-   * Relative penetration: positive part of `B u - c - C lambda`, where C = diag(1/k) is the
-   * compliance of the rows; for the worst row.
+   * Relative penetration: positive part of `B u - c - C lambda`, where C = diag(1/k) is the compliance of
+   * the rows; for the worst row.
    */
   double penetration;
-  /**
-   * Relative error of `H u = h + C mu`, for the worst row.
-   */
+  /** Relative error of `H u = h + C mu`, for the worst row. */
   double equality;
-  /**
-   * Relative size of a negative contact force, for the worst row.
-   */
+  /** Relative size of a negative contact force, for the worst row. */
   double negative_force;
   /**
-   * Relative size of the force or of the open gap `c + C lambda - B u`, whichever is smaller; for
-   * the worst row.
+   * Relative size of the force or of the open gap `c + C lambda - B u`, whichever is smaller; for the
+   * worst row.
    */
   double complementarity;
-  /**
-   * Relative gap between primal and dual energy, for the worst group of bodies.
-   */
+  /** Relative gap between primal and dual energy, for the worst group of bodies. */
   double duality_gap;
-  /**
-   * Body with the worst equilibrium, from 0; -1: none.
-   */
+  /** Body with the worst equilibrium, from 0; -1: none. */
   int64_t equilibrium_body;
-  /**
-   * Body with the worst balance, from 0; -1: none.
-   */
+  /** Body with the worst balance, from 0; -1: none. */
   int64_t balance_body;
-  /**
-   * Row with the worst penetration, from 0; -1: none.
-   */
+  /** Row with the worst penetration, from 0; -1: none. */
   int64_t penetration_row;
   /**
-   * Equality row with the worst error, from 0; -1: none, or the worst error is in the glue of
-   * unknowns with the same number (option glue).
+   * Equality row with the worst error, from 0; -1: none, or the worst error is in the glue of unknowns
+   * with the same number (option glue).
    */
   int64_t equality_row;
-  /**
-   * Row with the worst negative force, from 0; -1: none.
-   */
+  /** Row with the worst negative force, from 0; -1: none. */
   int64_t force_row;
-  /**
-   * Row with the worst complementarity, from 0; -1: none.
-   */
+  /** Row with the worst complementarity, from 0; -1: none. */
   int64_t complementarity_row;
   /**
    * Relative excess of a tangential force over its bound, `(|lambda_t| - b)_+` with b = bound +
@@ -2856,438 +1835,282 @@ typedef struct feti_certificate {
    */
   double friction_cone;
   /**
-   * Relative size of `b |s| - lambda_t's`, the deficit of frictional work, for the worst node. It is
-   * zero only if the node sticks or slips in the direction of a force that reaches the bound.
+   * Relative size of `b |s| - lambda_t's`, the deficit of frictional work, for the worst node. It is zero
+   * only if the node sticks or slips in the direction of a force that reaches the bound.
    */
   double friction_work;
-  /**
-   * Relative size of a slip although the force is within its bound, for the worst node.
-   */
+  /** Relative size of a slip although the force is within its bound, for the worst node. */
   double friction_stick;
-  /**
-   * Node with the worst excess over its bound, from 0; -1: none.
-   */
+  /** Node with the worst excess over its bound, from 0; -1: none. */
   int64_t friction_cone_node;
-  /**
-   * Node with the worst deficit of work, from 0; -1: none.
-   */
+  /** Node with the worst deficit of work, from 0; -1: none. */
   int64_t friction_work_node;
-  /**
-   * Node with the worst slip, from 0; -1: none.
-   */
+  /** Node with the worst slip, from 0; -1: none. */
   int64_t friction_stick_node;
 } feti_certificate;
 
 /**
- * Verifies an answer without tangential forces against the current problem; the answer may come
- * from another program.
- *
- * Every entry belongs to the worst body or the worst row, measured against its own forces and
- * deformation; the certificate names this body or row. Glue (option glue) is judged like equality
- * rows; its forces are not an argument, and the library uses the glue forces that fit the answer
- * best. Rows that never close, c = +infinity, are left out, and their lambda counts as 0. At nodes
- * with friction (feti_friction_add_i32 or _i64) the tangential force counts as 0;
- * feti_check_friction takes tangential forces into account. The call does not store the answer;
- * the answer of the last solve is kept. Runs feti_setup when it is due, because it needs the null
- * spaces. After a failure nothing is written.
- *
- * @param[in]     p      (scalar) the handle
- * @param[in]     n      (scalar) unknowns of all bodies
- * @param[in]     u      (n) displacement, body after body, length
- * @param[in]     rows   (scalar) number of inequality rows
- * @param[in]     lambda (rows) multipliers of `B u <= c`, force
- * @param[in]     eqs    (scalar) number of equality rows
- * @param[in]     mu     (eqs) multipliers of `H u = h`, force
- * @param[in,out] out    (scalar) `struct_size` set, at least 16
- *
- * Safety: The arrays have the given shapes, `out` points to `struct_size` writable bytes.
- */
-int32_t feti_check(struct feti_problem *p,
-                   int64_t n,
-                   const double *u,
-                   int64_t rows,
-                   const double *lambda,
-                   int64_t eqs,
-                   const double *mu,
-                   struct feti_certificate *out);
-
-/**
- * Verifies an answer with tangential forces against the current problem; the answer may come from
+ * Verifies an answer without tangential forces against the current problem; the answer may come from
  * another program.
  *
- * The call works like feti_check. In addition, the entries of friction judge at every node the
- * force lambda_t against the friction law and the slip `T u - s_old - C_t lambda_t` with the
- * current s_old, which after feti_friction_commit is that of the next step. Nodes that cannot
- * carry a tangential force (bound 0 and no contact row that may close) are left out. After a
- * failure nothing is written.
+ * Every entry belongs to the worst body or the worst row, measured against its own forces and deformation;
+ * the certificate names this body or row. Glue (option glue) is judged like equality rows; its forces are
+ * not an argument, and the library uses the glue forces that fit the answer best. Rows that never close, c
+ * = +infinity, are left out, and their lambda counts as 0. At nodes with friction (feti_friction_add_i32
+ * or _i64) the tangential force counts as 0; feti_check_friction takes tangential forces into account. The
+ * call does not store the answer; the answer of the last solve is kept. Runs feti_setup when it is due,
+ * because it needs the null spaces.
  *
- * @param[in]     p        (scalar) the handle
- * @param[in]     n        (scalar) unknowns of all bodies
- * @param[in]     u        (n) displacement, body after body, length
- * @param[in]     rows     (scalar) number of inequality rows
- * @param[in]     lambda   (rows) multipliers of `B u <= c`, force
- * @param[in]     eqs      (scalar) number of equality rows
- * @param[in]     mu       (eqs) multipliers of `H u = h`, force
- * @param[in]     nodes    (scalar) number of nodes with friction
- * @param[in]     dim      (scalar) tangential rows of a node, 1 or 2; ignored if there are no
- *                         nodes
- * @param[in]     lambda_t (dim * nodes) multipliers of the tangential rows, node after node, force
- * @param[in,out] out      (scalar) `struct_size` set, at least 16
- *
- * Safety: The arrays have the given shapes, `out` points to `struct_size` writable bytes.
+ * @param         n      unknowns of all bodies
+ * @param         u      (n) displacement, body after body, length
+ * @param         rows   number of inequality rows
+ * @param         lambda (rows) multipliers of `B u <= c`, force
+ * @param         eqs    number of equality rows
+ * @param         mu     (eqs) multipliers of `H u = h`, force
+ * @param[in,out] out    `struct_size` set, at least 16
  */
-int32_t feti_check_friction(struct feti_problem *p,
-                            int64_t n,
-                            const double *u,
-                            int64_t rows,
-                            const double *lambda,
-                            int64_t eqs,
-                            const double *mu,
-                            int64_t nodes,
-                            int32_t dim,
-                            const double *lambda_t,
-                            struct feti_certificate *out);
+int32_t feti_check(feti_problem *p, int64_t n, const double *u, int64_t rows, const double *lambda,
+                   int64_t eqs, const double *mu, feti_certificate *out);
+
+/**
+ * Verifies an answer with tangential forces against the current problem; the answer may come from another
+ * program.
+ *
+ * The call works like feti_check. In addition, the entries of friction judge at every node the force
+ * lambda_t against the friction law and the slip `T u - s_old - C_t lambda_t` with the current s_old,
+ * which after feti_friction_commit is that of the next step. Nodes that cannot carry a tangential force
+ * (bound 0 and no contact row that may close) are left out.
+ *
+ * @param         n        unknowns of all bodies
+ * @param         u        (n) displacement, body after body, length
+ * @param         rows     number of inequality rows
+ * @param         lambda   (rows) multipliers of `B u <= c`, force
+ * @param         eqs      number of equality rows
+ * @param         mu       (eqs) multipliers of `H u = h`, force
+ * @param         nodes    number of nodes with friction
+ * @param         dim      tangential rows of a node, 1 or 2; ignored if there are no nodes
+ * @param         lambda_t (dim * nodes) multipliers of the tangential rows, node after node, force
+ * @param[in,out] out      `struct_size` set, at least 16
+ */
+int32_t feti_check_friction(feti_problem *p, int64_t n, const double *u, int64_t rows, const double *lambda,
+                            int64_t eqs, const double *mu, int64_t nodes, int32_t dim,
+                            const double *lambda_t, feti_certificate *out);
 
 /**
  * Applies the generalised inverse of a body, `Y = K+ X`.
  *
- * Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE if the body is cut
- * into pieces (feti_body_mesh_i32 or _i64). After a failure nothing is written.
+ * Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE if the body is cut into pieces
+ * (feti_body_mesh_i32 or _i64).
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
- * @param[in]  nrhs (scalar) columns of X and Y
- * @param[in]  x    (ldx * nrhs) column-major, force
- * @param[in]  ldx  (scalar) >= n
+ * @param      nrhs columns of X and Y
+ * @param      x    (ldx * nrhs) column-major, force
+ * @param      ldx  >= n
  * @param[out] y    (ldy * nrhs) column-major, length
- * @param[in]  ldy  (scalar) >= n
- *
- * Safety: The arrays have the given shapes.
+ * @param      ldy  >= n
  */
-int32_t feti_body_kplus(struct feti_problem *p,
-                        int64_t body,
-                        int64_t n,
-                        int64_t nrhs,
-                        const double *x,
-                        int64_t ldx,
-                        double *y,
-                        int64_t ldy);
+int32_t feti_body_kplus(feti_problem *p, int64_t body, int64_t n, int64_t nrhs, const double *x, int64_t ldx,
+                        double *y, int64_t ldy);
 
 /**
  * Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
  *
- * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid rows. F does not
- * include the tangential rows of nodes with friction. Runs feti_setup when it is due. `x` and `y`
- * may be the same array. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or
- * unknowns are glued (option glue). After a failure nothing is written.
+ * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid rows. F does not include
+ * the tangential rows of nodes with friction. Runs feti_setup when it is due. `x` and `y` may be the same
+ * array. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or unknowns are glued
+ * (option glue).
  *
- * @param[in]  p (scalar) the handle
- * @param[in]  m (scalar) inequality rows + equality rows
- * @param[in]  x (m) force
+ * @param      m inequality rows + equality rows
+ * @param      x (m) force
  * @param[out] y (m) length
- *
- * Safety: The arrays have the given shapes.
  */
-int32_t feti_dual_apply(struct feti_problem *p, int64_t m, const double *x, double *y);
+int32_t feti_dual_apply(feti_problem *p, int64_t m, const double *x, double *y);
 
 /**
  * Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
  *
- * Runs feti_setup when it is due. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or
- * _i64) or unknowns are glued (option glue). After a failure nothing is written.
+ * Runs feti_setup when it is due. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or
+ * unknowns are glued (option glue).
  *
- * @param[in]  p (scalar) the handle
- * @param[in]  m (scalar) inequality rows + equality rows
+ * @param      m inequality rows + equality rows
  * @param[out] d (m) length
- *
- * Safety: The array has the given shape.
  */
-int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
+int32_t feti_dual_rhs(feti_problem *p, int64_t m, double *d);
 
-/*
- * Files
- * =====
- * Write a problem to a file and read it.
- */
+/* ==== Files ====
+ * Write a problem to a file and read it. */
 
 /**
  * Writes all input of the problem to one file, for example for a bug report.
  *
- * The file has the bodies with their matrices, null spaces, coordinates, fixing unknowns, loads
- * and numbers of the host, rows of both kinds with right-hand sides and compliances, and the
- * options that differ from their defaults, all bit by bit. It does not have the answer, start
- * values, saved states and functions of the host. docs/file_format.md describes every byte. The
- * library writes the file under another name in the same folder and renames it when it is
- * complete: after a failure an old file is unchanged, and no other file is left. FETI_IO with
- * path, operation and the message of the system; FETI_UNSUPPORTED if a body has functions of the
- * host instead of a matrix (feti_body_operator), because no file can hold them. Borrowed matrices
- * are written with their current values. For a body that is cut (feti_body_mesh_i32) the file has
- * the pieces, not the elements; FETI_STATE if elements of a body are missing.
+ * The file has the bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and
+ * numbers of the host, rows of both kinds with right-hand sides and compliances, and the options that
+ * differ from their defaults, all bit by bit. It does not have the answer, start values, saved states and
+ * functions of the host. docs/file_format.md describes every byte. The library writes the file under
+ * another name in the same folder and renames it when it is complete: after a failure an old file is
+ * unchanged, and no other file is left. FETI_IO with path, operation and the message of the system;
+ * FETI_UNSUPPORTED if a body has functions of the host instead of a matrix (feti_body_operator), because
+ * no file can hold them. Borrowed matrices are written with their current values. For a body that is cut
+ * (feti_body_mesh_i32) the file has the pieces, not the elements; FETI_STATE if elements of a body are
+ * missing.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] path (text) name of the file; an existing file is replaced
- *
- * Safety: `path` is NUL terminated.
+ * @param path (text) name of the file; an existing file is replaced
  */
-int32_t feti_problem_write(struct feti_problem *p, const char *path);
+int32_t feti_problem_write(feti_problem *p, const char *path);
 
 /**
  * Reads a file of feti_problem_write into an empty problem.
  *
- * A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or
- * rows already. Options get their values from the file and otherwise their defaults, except
- * index_base, which is unchanged. All data pass the same checks as in the corresponding calls.
- * FETI_IO with path and the message of the system, or with the position of the first wrong byte if
- * the file is damaged (`entry` of feti_last_error_detail); FETI_UNSUPPORTED if the file has
- * contents of a later version. After a failure the problem is unchanged.
+ * A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or rows
+ * already. Options get their values from the file and otherwise their defaults, except index_base, which
+ * is unchanged. All data pass the same checks as in the corresponding calls. FETI_IO with path and the
+ * message of the system, or with the position of the first wrong byte if the file is damaged (`entry` of
+ * feti_last_error_detail); FETI_UNSUPPORTED if the file has contents of a later version.
  *
- * Whatever their original form, matrices are read back as rows of the lower triangle, with
- * ascending columns and every diagonal entry. feti_body_values then expects the values in this
- * order, and feti_body_values_split and feti_body_values_dense return FETI_STATE until the matrix
- * has been given again.
+ * Whatever their original form, matrices are read back as rows of the lower triangle, with ascending
+ * columns and every diagonal entry. feti_body_values then expects the values in this order, and
+ * feti_body_values_split and feti_body_values_dense return FETI_STATE until the matrix has been given
+ * again.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] path (text) name of the file
- *
- * Safety: `path` is NUL terminated.
+ * @param path (text) name of the file
  */
-int32_t feti_problem_read(struct feti_problem *p, const char *path);
+int32_t feti_problem_read(feti_problem *p, const char *path);
 
-/*
- * Errors
- * ======
- * Read what went wrong, where and by how much.
- */
+/* ==== Errors ====
+ * Read what went wrong, where and by how much. */
 
-/**
- * What went wrong, where and by how much. Numbers count from 0.
- */
+/** What went wrong, where and by how much. Numbers count from 0. */
 typedef struct feti_error_detail {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
+  /** Set by the caller: size of the struct in bytes. */
   int64_t struct_size;
-  /**
-   * Status that the function returned; 0: no error has occurred yet.
-   */
+  /** Status that the function returned; 0: no error has occurred yet. */
   int32_t status;
-  /**
-   * Position of the refused argument, where the handle is argument 1; 0: none.
-   */
+  /** Position of the refused argument, where the handle is argument 1; 0: none. */
   int32_t argument;
-  /**
-   * Body; -1: does not apply.
-   */
+  /** Body; -1: does not apply. */
   int64_t body;
-  /**
-   * Connected part of the body; -1: does not apply.
-   */
+  /** Connected part of the body; -1: does not apply. */
   int64_t component;
-  /**
-   * Unknown of the body; -1: does not apply.
-   */
+  /** Unknown of the body; -1: does not apply. */
   int64_t dof;
-  /**
-   * Row of the matrix or of the constraints; -1: does not apply.
-   */
+  /** Row of the matrix or of the constraints; -1: does not apply. */
   int64_t row;
-  /**
-   * Position in the array, or of the byte in a text or a file; -1: does not apply.
-   */
+  /** Position in the array, or of the byte in a text or a file; -1: does not apply. */
   int64_t entry;
   /**
-   * The number that was found; an index is as the host gave it, in the base of the call; NaN: does
-   * not apply.
+   * The number that was found; an index is as the host gave it, in the base of the call; NaN: does not
+   * apply.
    */
   double value;
-  /**
-   * The limit for this number; NaN: does not apply.
-   */
+  /** The limit for this number; NaN: does not apply. */
   double limit;
-  /**
-   * Name of the function that failed, NUL terminated.
-   */
+  /** Name of the function that failed, NUL terminated. */
   char function[40];
-  /**
-   * Element of the body; -1: does not apply.
-   */
+  /** Element of the body; -1: does not apply. */
   int64_t element;
-  /**
-   * Node with friction; -1: does not apply.
-   */
+  /** Node with friction; -1: does not apply. */
   int64_t node;
 } feti_error_detail;
 
 /**
  * Text of the last error in the calling thread.
  *
- * The text is truncated to fit, and always NUL terminated if `cap` > 0. Returns the full length
- * without the NUL, or 0 if no error has occurred; a successful call does not clear the text. Never
- * fails.
+ * The text is truncated to fit, and always NUL terminated if `cap` > 0. Returns the full length without
+ * the NUL, or 0 if no error has occurred; a successful call does not clear the text. Never fails.
  *
  * @param[out] buf (text) room for `cap` characters; NULL asks for the length
- * @param[in]  cap (scalar) characters in `buf`, 0 with NULL
- *
- * Safety: `buf` has room for `cap` characters or is NULL.
+ * @param      cap characters in `buf`, 0 with NULL
  */
 int64_t feti_last_error(char *buf, int64_t cap);
 
 /**
  * Details of the last error in the calling thread: function, argument, place, value and limit.
  *
- * The caller sets `struct_size`; the library writes no more bytes than that. A refusal of `out`
- * leaves the last error unchanged.
+ * The caller sets `struct_size`; the library writes no more bytes than that. A refusal of `out` leaves the
+ * last error unchanged.
  *
- * @param[in,out] out (scalar) `struct_size` set, at least 16
- *
- * Safety: `out` points to `struct_size` writable bytes.
+ * @param[in,out] out `struct_size` set, at least 16
  */
-int32_t feti_last_error_detail(struct feti_error_detail *out);
+int32_t feti_last_error_detail(feti_error_detail *out);
 
 /**
  * Text of the last error of the problem.
  *
- * May be called while another call on the problem runs. The text is truncated to fit, and always
- * NUL terminated if `cap` > 0. It is empty if no error has occurred; a successful call does not
- * clear it.
+ * May be called while another call on the problem runs. The text is truncated to fit, and always NUL
+ * terminated if `cap` > 0. It is empty if no error has occurred; a successful call does not clear it.
  *
- * @param[in]  p   (scalar) the handle
  * @param[out] buf (text) room for `cap` characters; NULL with `cap` = 0 asks for the length
- * @param[in]  cap (scalar) characters in `buf`, >= 0
- * @param[out] len (scalar) full length without the terminating zero
- *
- * Safety: `buf` has room for `cap` characters, `len` for one number.
+ * @param      cap characters in `buf`, >= 0
+ * @param[out] len full length without the terminating zero
  */
-int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64_t *len);
+int32_t feti_problem_error(feti_problem *p, char *buf, int64_t cap, int64_t *len);
 
-/*
- * Statuses and version
- * ====================
- * Names and texts of return values; the version of the library.
- */
+/* ==== Statuses and version ====
+ * Names and texts of return values; the version of the library. */
 
-/**
- * Done.
- */
+/** Done. */
 #define FETI_OK 0
-
-/**
- * The limit on steps was reached; the results are those of the last step.
- */
+/** The limit on steps was reached; the results are those of the last step. */
 #define FETI_ITERATIONS 1
-
-/**
- * The time limit was reached; the results are those of the last step.
- */
+/** The time limit was reached; the results are those of the last step. */
 #define FETI_TIME 2
-
-/**
- * The host cancelled; the results are those of the last step, or none if there was no step yet.
- */
+/** The host cancelled; the results are those of the last step, or none if there was no step yet. */
 #define FETI_CANCELLED 3
-
-/**
- * Steps no longer reduce the error; the results are those of the last step.
- */
+/** Steps no longer reduce the error; the results are those of the last step. */
 #define FETI_STALLED 4
-
-/**
- * The certificate does not pass.
- */
+/** The certificate does not pass. */
 #define FETI_INACCURATE 5
-
 /**
- * The answer is usable but incomplete: a small part of the load is not held, or a body moves far
- * beyond its deformation.
+ * The answer is usable but incomplete: a small part of the load is not held, or a body moves far beyond
+ * its deformation.
  */
 #define FETI_MARGINAL 6
-
-/**
- * Memory could not be reserved, or option memory_limit would be exceeded.
- */
+/** Memory could not be reserved, or option memory_limit would be exceeded. */
 #define FETI_MEMORY -1
-
-/**
- * The handle is NULL, was destroyed, or does not come from this library.
- */
+/** The handle is NULL, was destroyed, or does not come from this library. */
 #define FETI_HANDLE -2
-
-/**
- * Another call on this problem is running.
- */
+/** Another call on this problem is running. */
 #define FETI_BUSY -3
-
-/**
- * A function of the host reported a failure.
- */
+/** A function of the host reported a failure. */
 #define FETI_CALLBACK -4
-
-/**
- * Something that this call needs has not been given yet.
- */
+/** Something that this call needs has not been given yet. */
 #define FETI_STATE -5
-
-/**
- * No contact force can balance the load.
- */
+/** No contact force can balance the load. */
 #define FETI_LOAD_NOT_HELD -6
-
-/**
- * Rows contradict each other.
- */
+/** Rows contradict each other. */
 #define FETI_GAPS_CONTRADICT -7
-
-/**
- * The null space of a body is not the one that was given, or was not found.
- */
+/** The null space of a body is not the one that was given, or was not found. */
 #define FETI_NULL_SPACE -8
-
 /**
- * A stiffness matrix has a negative or vanishing pivot outside its null space, or negative
- * stiffness along a motion that the contact does not stop.
+ * A stiffness matrix has a negative or vanishing pivot outside its null space, or negative stiffness along
+ * a motion that the contact does not stop.
  */
 #define FETI_INDEFINITE -9
-
-/**
- * A file could not be read or written.
- */
+/** A file could not be read or written. */
 #define FETI_IO -10
-
 /**
- * An internal error of the library; afterwards only feti_problem_destroy and the error functions
- * accept the problem.
+ * An internal error of the library; afterwards only feti_problem_destroy and the error functions accept
+ * the problem.
  */
 #define FETI_INTERNAL -11
-
-/**
- * The request is valid but not available.
- */
+/** The request is valid but not available. */
 #define FETI_UNSUPPORTED -12
-
-/**
- * A given number, or a product of given numbers, does not fit its type.
- */
+/** A given number, or a product of given numbers, does not fit its type. */
 #define FETI_OVERFLOW -13
-
-/**
- * Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found.
- */
+/** Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found. */
 #define FETI_SLIDES -14
-
 /**
- * FETI_ARGUMENT - k: argument k was refused, where the handle is argument 1. FETI_ARGUMENT itself:
- * data of an earlier call was refused.
+ * FETI_ARGUMENT - k: argument k was refused, where the handle is argument 1. FETI_ARGUMENT itself: data of
+ * an earlier call was refused.
  */
 #define FETI_ARGUMENT -100
 
 /**
  * Name of a status, such as "FETI_LOAD_NOT_HELD".
  *
- * The name is "FETI_ARGUMENT" for every refused argument and "FETI_UNKNOWN" for a number that is
- * not a status. The text is static. Never fails.
+ * The name is "FETI_ARGUMENT" for every refused argument and "FETI_UNKNOWN" for a number that is not a
+ * status. The text is static. Never fails.
  *
- * @param[in] status (scalar) any number
+ * @param status any number
  */
 const char *feti_status_name(int32_t status);
 
@@ -3296,7 +2119,7 @@ const char *feti_status_name(int32_t status);
  *
  * The text is static. Never fails.
  *
- * @param[in] status (scalar) any number
+ * @param status any number
  */
 const char *feti_status_text(int32_t status);
 
@@ -3315,7 +2138,7 @@ const char *feti_version(void);
 int32_t feti_version_number(void);
 
 #ifdef __cplusplus
-}  // extern "C"
-#endif  /* __cplusplus */
+}
+#endif
 
-#endif  /* FETI_CONTACT_H */
+#endif

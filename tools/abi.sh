@@ -11,8 +11,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 soname=$(readelf -dW "$library" | sed -n 's/.*SONAME.*\[\(.*\)\]/\1/p')
 
-# plain HEADER: its declarations, a member or the end of a prototype to a line.
-plain() { sed '/^#include/d' "$1" | ${CC:-cc} -E -P -x c -; }
+# plain HEADER: its declarations, a member or a prototype to a line.
+plain() { sed '/^#include/d' "$1" | ${CC:-cc} -E -P -x c - | sed ':join; /,$/ { N; s/,\n */, /; b join }'; }
 
 # as_long_as OLD: standard input with no more members in a struct than it has in OLD; what has come at the end is left out.
 as_long_as() {
@@ -38,19 +38,15 @@ described() {
 
 # prototypes HEADER: functions, of the host too, with the names of their parameters, which libabigail does not compare: two of
 # one type may have changed places.
-prototypes() {
-    plain "$1" | tr '\n' ' ' | sed 's/  */ /g; s/;/;\n/g' | sed -n '/feti_[a-z0-9_]*)\{0,1\}(/s/^ *//p' | sort
-}
+prototypes() { plain "$1" | grep 'feti_[a-z0-9_]*)\{0,1\}(' | sed 's/struct //g' | sort; }
 
-# constants HEADER: name and value, without the version.
-constants() {
-    ${CC:-cc} -E -dM -x c "$1" | sed -n '/FETI_CONTACT_/d; s/^#define \(FETI_[A-Z0-9_]* .*\)/\1/p' | sort
-}
+# constants HEADER: their definitions, without the version.
+constants() { ${CC:-cc} -E -dM -x c "$1" | grep '^#define FETI_' | grep -v FETI_CONTACT_ | sort; }
 
 case $way in
 write)
     plain "$header" | described >"$baseline/$soname.abi"
-    cp "$header" "$baseline/$soname.h"
+    { echo "#include <stdint.h>"; constants "$header"; plain "$header"; } >"$baseline/$soname.h"
     ;;
 check)
     [ -f "$baseline/$soname.abi" ] || { echo "no baseline for $soname in $baseline: make abi"; exit 1; }

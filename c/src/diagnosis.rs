@@ -13,8 +13,8 @@ use feti_contact::solver::{Findings, RowKind};
 /// its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the rows that contradict each other. If several
 /// groups of bodies have no answer, the findings describe the first of them. After FETI_INDEFINITE, FETI_NULL_SPACE and
 /// similar statuses: the body and the unknown. With an answer: undetermined motions, redundant rows, and bodies that no
-/// row touches. The findings are kept until the next solve or the next failed setup. FETI_STATE before the first solve or
-/// failed setup. After a failure nothing is written.
+/// row touches. The findings are kept until the next solve or the next failed setup. FETI_STATE before the first solve
+/// or failed setup.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -36,11 +36,10 @@ pub unsafe extern "C" fn feti_diagnosis(p: *mut feti_problem, out: *mut feti_fin
 /// Lists the rows of one kind that contradict each other, with their weights, or without a contradiction the redundant
 /// rows.
 ///
-/// The weights w, scaled to a largest weight of 1, prove a contradiction: over the rows b of both kinds the sum of w b is
-/// 0 and the sum of w c is negative, with w > 0 for inequalities. If unknowns with the same number are glued (option
-/// glue), the sum of w b is 0 for each number, and feti_last_error names some of these numbers. The weight of a redundant
-/// row is its factor relative to the row that it repeats. FETI_STATE before the first solve. After a failure nothing is
-/// written.
+/// The weights w, scaled to a largest weight of 1, prove a contradiction: over the rows b of both kinds the sum of w b
+/// is 0 and the sum of w c is negative, with w > 0 for inequalities. If unknowns with the same number are glued (option
+/// glue), the sum of w b is 0 for each number, and feti_last_error names some of these numbers. The weight of a
+/// redundant row is its factor relative to the row that it repeats. FETI_STATE before the first solve.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -86,7 +85,7 @@ pub unsafe extern "C" fn feti_diagnosis_rows(
 /// Lists the equality rows that are linear combinations of the other equality rows; this call computes them.
 ///
 /// These rows add no constraint, and the distribution of forces among them is not unique. feti_diagnosis_rows lists the
-/// rows that repeat another row. FETI_STATE before the first setup. After a failure nothing is written.
+/// rows that repeat another row. FETI_STATE before the first setup.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -115,7 +114,7 @@ pub unsafe extern "C" fn feti_diagnosis_dependent(
 
 /// Lists the bodies that no row touched in the last solve, or in the last failed setup.
 ///
-/// Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a failure nothing is written.
+/// Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -151,7 +150,7 @@ fn write_list(numbers: &[usize], (count, list): (Output<i64>, Output<i64>)) {
 /// Reads a rigid body motion that the last answer leaves undetermined: the body and its motion.
 ///
 /// `undetermined` of feti_findings is the number of these motions. Bodies that are not connected appear in separate
-/// motions. FETI_STATE without an answer. After a failure nothing is written.
+/// motions. FETI_STATE without an answer.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -183,7 +182,7 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined(
 /// Reads the motion of every unknown of a body in a rigid body motion that the last answer leaves undetermined.
 ///
 /// The motion is scaled so that its largest entry over all bodies is 1; bodies that do not move have zeros. FETI_STATE
-/// without an answer. After a failure nothing is written.
+/// without an answer.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -216,8 +215,8 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined_motion(
 ///
 /// The load does work on this motion, and no row resists it. The motion is scaled so that its largest entry over all
 /// bodies is 1; bodies that do not move have zeros. After FETI_SLIDES it is the motion that friction does not hold, and
-/// after FETI_INDEFINITE the motion with negative stiffness that closed rows do not stop. FETI_STATE unless the last solve ended
-/// with one of these statuses and found a motion. After a failure nothing is written.
+/// after FETI_INDEFINITE the motion with negative stiffness that closed rows do not stop. FETI_STATE unless the last
+/// solve ended with one of these statuses and found a motion.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -34,10 +34,10 @@ pub unsafe extern "C" fn feti_problem_write(p: *mut feti_problem, path: *const c
 /// Reads a file of feti_problem_write into an empty problem.
 ///
 /// A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or rows already. Options
-/// get their values from the file and otherwise their defaults, except index_base, which is unchanged. All data pass the
-/// same checks as in the corresponding calls. FETI_IO with path and the message of the system, or with the position of
-/// the first wrong byte if the file is damaged (`entry` of feti_last_error_detail); FETI_UNSUPPORTED if the file has
-/// contents of a later version. After a failure the problem is unchanged.
+/// get their values from the file and otherwise their defaults, except index_base, which is unchanged. All data pass
+/// the same checks as in the corresponding calls. FETI_IO with path and the message of the system, or with the position
+/// of the first wrong byte if the file is damaged (`entry` of feti_last_error_detail); FETI_UNSUPPORTED if the file has
+/// contents of a later version.
 ///
 /// Whatever their original form, matrices are read back as rows of the lower triangle, with ascending columns and every
 /// diagonal entry. feti_body_values then expects the values in this order, and feti_body_values_split and

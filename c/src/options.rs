@@ -11,7 +11,7 @@ use feti_contact::solver::{options, OptionInfo, OptionValue};
 
 /// Sets an option that is a number.
 ///
-/// The value stays valid until it is set again. After a failure the option is unchanged.
+/// The value stays valid until it is set again.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -31,7 +31,7 @@ pub unsafe extern "C" fn feti_set_f64(p: *mut feti_problem, name: *const c_char,
 
 /// Sets an option that is an integer.
 ///
-/// The value stays valid until it is set again. After a failure the option is unchanged.
+/// The value stays valid until it is set again.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn feti_set_i64(p: *mut feti_problem, name: *const c_char,
 
 /// Sets an option that is a text.
 ///
-/// The text is copied and stays valid until it is set again. After a failure the option is unchanged.
+/// The text is copied and stays valid until it is set again.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -76,9 +76,9 @@ pub unsafe extern "C" fn feti_set_str(
 
 /// Sets several options with one text, such as "tolerance=1e-8 threads=4".
 ///
-/// The text has items name = value of any type, separated by blanks, commas or line ends; a # begins a comment that ends
-/// with the line. If an option occurs twice, the last value counts. After a failure all options are unchanged; the error
-/// names the option, and `entry` of the error detail is the position of the byte in the text, from 0.
+/// The text has items name = value of any type, separated by blanks, commas or line ends; a # begins a comment that
+/// ends with the line. If an option occurs twice, the last value counts. The error names the option, and `entry` of the
+/// error detail is the position of the byte in the text, from 0.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -96,8 +96,6 @@ pub unsafe extern "C" fn feti_set_text(p: *mut feti_problem, text: *const c_char
 }
 
 /// Reads an option that is a number.
-///
-/// After a failure `value` is unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -119,8 +117,6 @@ pub unsafe extern "C" fn feti_get_f64(p: *mut feti_problem, name: *const c_char,
 
 /// Reads an option that is an integer.
 ///
-/// After a failure `value` is unchanged.
-///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
@@ -141,7 +137,7 @@ pub unsafe extern "C" fn feti_get_i64(p: *mut feti_problem, name: *const c_char,
 
 /// Reads an option that is a text.
 ///
-/// The text is truncated to fit, and always NUL terminated if `cap` > 0. After a failure nothing is written.
+/// The text is truncated to fit, and always NUL terminated if `cap` > 0.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -182,8 +178,7 @@ pub extern "C" fn feti_option_count() -> i64 {
 
 /// Describes an option: name, text, type, default and range.
 ///
-/// The texts are static. The caller sets `struct_size`; the library writes no more bytes than that. After a failure
-/// nothing is written.
+/// The texts are static. The caller sets `struct_size`; the library writes no more bytes than that.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

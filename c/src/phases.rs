@@ -5,8 +5,6 @@ use crate::header::types::{feti_phase, feti_problem};
 
 /// Number of phases of a setup and a solve.
 ///
-/// After a failure nothing is written.
-///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
@@ -26,8 +24,8 @@ pub unsafe extern "C" fn feti_phase_count(p: *mut feti_problem, count: *mut i64)
 /// Reads time and memory of a phase. The phases are rows, null spaces, analysis, factorisation, dual operators,
 /// preconditioner, dual solve, recovery, in this order.
 ///
-/// The times refer to the last setup or solve, even if it failed; a phase without work has time zero. Later solves do not
-/// repeat what a setup keeps. After a failure nothing is written.
+/// The times refer to the last setup or solve, even if it failed; a phase without work has time zero. Later solves do
+/// not repeat what a setup keeps.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -16,8 +16,8 @@ const EMPTY: usize = 96 << 10;
 
 /// Creates a problem without bodies and rows.
 ///
-/// The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is unchanged.
-/// FETI_MEMORY, without an error text, if there is not enough memory for an empty problem.
+/// The handle is valid until feti_problem_destroy; its number is never used again. FETI_MEMORY, without an error text,
+/// if there is not enough memory for an empty problem.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -15,11 +15,10 @@ use feti_contact::solver::{FrictionState, RowState};
 
 /// Reads the displacement of a body.
 ///
-/// FETI_ALL reads the displacements of all bodies. If the bodies have numbers of the host, the array uses these numbers,
-/// and entries that belong to no unknown are left unchanged; otherwise it gets one body after the other. Bodies in a
-/// group without an answer (feti_solve) get NaN. FETI_STATE if no solve has given an answer yet, if the group of the body
-/// has no answer, and with FETI_ALL if some bodies have numbers of the host and others have none. After a failure nothing
-/// is written.
+/// FETI_ALL reads the displacements of all bodies. If the bodies have numbers of the host, the array uses these
+/// numbers, and entries that belong to no unknown are left unchanged; otherwise it gets one body after the other.
+/// Bodies in a group without an answer (feti_solve) get NaN. FETI_STATE if no solve has given an answer yet, if the
+/// group of the body has no answer, and with FETI_ALL if some bodies have numbers of the host and others have none.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -53,9 +52,9 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
 ///
 /// FETI_ALL reads the forces on all bodies. If the bodies have numbers of the host, the array uses these numbers, and
 /// entries that belong to no unknown are left unchanged; otherwise it gets one body after the other. Entries on which
-/// rows act get NaN if the group of the body has no answer (feti_solve). FETI_STATE if no solve has given an answer yet,
-/// if the group of the body has no answer, and with FETI_ALL if some bodies have numbers of the host and others have
-/// none. After a failure nothing is written.
+/// rows act get NaN if the group of the body has no answer (feti_solve). FETI_STATE if no solve has given an answer
+/// yet, if the group of the body has no answer, and with FETI_ALL if some bodies have numbers of the host and others
+/// have none.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -95,8 +94,7 @@ pub unsafe extern "C" fn feti_reaction(
 
 /// Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R alpha`.
 ///
-/// FETI_STATE if no solve has given an answer yet, and if the group of the body has no answer (feti_solve). After a
-/// failure nothing is written.
+/// FETI_STATE if no solve has given an answer yet, and if the group of the body has no answer (feti_solve).
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -118,8 +116,8 @@ pub unsafe extern "C" fn feti_amplitudes(p: *mut feti_problem, body: i64, r: i64
 
 /// Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with friction, node after node.
 ///
-/// Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get 0. FETI_STATE if no solve
-/// has given an answer yet. After a failure nothing is written.
+/// Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get 0. FETI_STATE if no
+/// solve has given an answer yet.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -147,7 +145,7 @@ pub unsafe extern "C" fn feti_multipliers(
 /// Reads the remaining gaps, c - B u; for compliant rows c + lambda/k - B u, which is 0 if they carry a force.
 ///
 /// Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get +infinity. FETI_STATE if
-/// no solve has given an answer yet. After a failure nothing is written.
+/// no solve has given an answer yet.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -167,9 +165,9 @@ pub unsafe extern "C" fn feti_gaps(p: *mut feti_problem, rows: i64, slack: *mut 
 
 /// Reads the state of the inequality rows, decided by what the certificate regards as zero at each row.
 ///
-/// FETI_ROW_CLOSED means a force; FETI_ROW_OPEN means a gap and no force, or a row that never closes; FETI_ROW_WEAK means
-/// neither a gap nor a force; FETI_ROW_UNKNOWN means that the bodies of the row are in a group without an answer
-/// (feti_solve). FETI_STATE if no solve has given an answer yet. After a failure nothing is written.
+/// FETI_ROW_CLOSED means a force; FETI_ROW_OPEN means a gap and no force, or a row that never closes; FETI_ROW_WEAK
+/// means neither a gap nor a force; FETI_ROW_UNKNOWN means that the bodies of the row are in a group without an answer
+/// (feti_solve). FETI_STATE if no solve has given an answer yet.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -197,8 +195,8 @@ pub unsafe extern "C" fn feti_active(p: *mut feti_problem, rows: i64, state: *mu
 
 /// Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t`, with the s_old of that solve.
 ///
-/// A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). Nodes on bodies in a group without
-/// an answer (feti_solve) get NaN. FETI_STATE if no solve has given an answer yet. After a failure nothing is written.
+/// A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). Nodes on bodies in a group
+/// without an answer (feti_solve) get NaN. FETI_STATE if no solve has given an answer yet.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -227,10 +225,10 @@ pub unsafe extern "C" fn feti_friction_slips(
 /// Reads the states of the nodes in the last answer, decided by what the certificate regards as zero at each node.
 ///
 /// FETI_FRICTION_OPEN means only that the bound is zero: a node with `bound` > 0 sticks or slips even if its contact is
-/// open; FETI_FRICTION_STICK means a force within the bound; FETI_FRICTION_SLIP means a slip in the direction of a force
-/// that reaches the bound; FETI_FRICTION_WEAK means a force that reaches the bound without a slip, within rounding error;
-/// FETI_FRICTION_UNKNOWN means that the bodies of the node are in a group without an answer (feti_solve). FETI_STATE if
-/// no solve has given an answer yet. After a failure nothing is written.
+/// open; FETI_FRICTION_STICK means a force within the bound; FETI_FRICTION_SLIP means a slip in the direction of a
+/// force that reaches the bound; FETI_FRICTION_WEAK means a force that reaches the bound without a slip, within
+/// rounding error; FETI_FRICTION_UNKNOWN means that the bodies of the node are in a group without an answer
+/// (feti_solve). FETI_STATE if no solve has given an answer yet.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -258,8 +256,6 @@ pub unsafe extern "C" fn feti_friction_states(p: *mut feti_problem, nodes: i64, 
 }
 
 /// Reads the current size of the problem.
-///
-/// After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -300,8 +296,8 @@ pub unsafe extern "C" fn feti_counts(
 
 /// Reads how many nodes with friction the problem has now, and how many tangential rows each of them has.
 ///
-/// Also right after feti_problem_read: these are the sizes of the arrays of nodes, such as those of feti_friction_slips and
-/// feti_friction_states. After a failure nothing is written.
+/// Also right after feti_problem_read: these are the sizes of the arrays of nodes, such as those of feti_friction_slips
+/// and feti_friction_states.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -1,128 +1,56 @@
 //! Rows of `B u <= c` and `H u = h`, numbered per kind from 0.
 
 use crate::boundary::{
-    base, call, count, enter, id, input, input_or_none, meaning, numbers, pointers, Call, Index, Output,
+    base_of, call, count, enter, id, input, input_or_none, meaning, numbers, pointers, twins, Output,
 };
 use crate::header::types::{feti_problem, FETI_EQUALITY, FETI_INEQUALITY, FETI_TANGENTIAL};
 use feti_contact::error::{Error, Result};
 use feti_contact::solver::{RowKind, RowsInput};
 
-/// Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
-///
-/// The rows are copied and numbered after the existing rows of the same kind. If a pair of body and unknown occurs twice
-/// in a row, the entries are summed. A contact row with c = +infinity never closes: it carries no force and joins no
-/// bodies, but it keeps its number, and feti_rows_rhs can turn it on. FETI_STATE if `body` is NULL and some bodies have
-/// numbers of the host while others have none. After a failure nothing is added.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
-/// | `rows` | in | scalar | number of rows, 0 adds none |
-/// | `row_ptr` | in | rows + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
-/// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
-/// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
-/// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
-/// | `rhs` | in | rows | c or h, length; c may be +infinity; NULL: zeros |
-/// | `first` | out | scalar | number of the first row added, from 0; may be NULL |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_rows_add_i32(
-    p: *mut feti_problem,
-    kind: i32,
-    rows: i64,
-    row_ptr: *const i32,
-    body: *const i32,
-    dof: *const i32,
-    val: *const f64,
-    base: i32,
-    rhs: *const f64,
-    first: *mut i64,
-) -> i32 {
-    let call = call!(feti_rows_add_i32(p, kind, rows, row_ptr, body, dof, val, base, rhs, first));
-    let given = HostRows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
-    // SAFETY: shapes guaranteed by the caller.
-    unsafe { given.add(p, call) }
-}
-
-/// Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
-///
-/// The rows are copied and numbered after the existing rows of the same kind. If a pair of body and unknown occurs twice
-/// in a row, the entries are summed. A contact row with c = +infinity never closes: it carries no force and joins no
-/// bodies, but it keeps its number, and feti_rows_rhs can turn it on. FETI_STATE if `body` is NULL and some bodies have
-/// numbers of the host while others have none. After a failure nothing is added.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
-/// | `rows` | in | scalar | number of rows, 0 adds none |
-/// | `row_ptr` | in | rows + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
-/// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
-/// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
-/// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
-/// | `rhs` | in | rows | c or h, length; c may be +infinity; NULL: zeros |
-/// | `first` | out | scalar | number of the first row added, from 0; may be NULL |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_rows_add_i64(
-    p: *mut feti_problem,
-    kind: i32,
-    rows: i64,
-    row_ptr: *const i64,
-    body: *const i64,
-    dof: *const i64,
-    val: *const f64,
-    base: i32,
-    rhs: *const f64,
-    first: *mut i64,
-) -> i32 {
-    let call = call!(feti_rows_add_i64(p, kind, rows, row_ptr, body, dof, val, base, rhs, first));
-    let given = HostRows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
-    // SAFETY: shapes guaranteed by the caller.
-    unsafe { given.add(p, call) }
-}
-
-/// Arguments of the two functions above.
-struct HostRows<I> {
-    kind: i32,
-    rows: i64,
-    row_ptr: *const I,
-    body: *const I,
-    dof: *const I,
-    val: *const f64,
-    base: i32,
-    rhs: *const f64,
-    first: *mut i64,
-}
-
-impl<I: Index> HostRows<I> {
+twins! {
+    /// Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
+    ///
+    /// The rows are numbered after the existing rows of the same kind. If a pair of body and unknown occurs twice in a
+    /// row, the entries are summed. A contact row with c = +infinity never closes: it carries no force and joins no
+    /// bodies, but it keeps its number, and feti_rows_rhs can turn it on. FETI_STATE if `body` is NULL and some bodies
+    /// have numbers of the host while others have none.
+    ///
+    /// | argument | in/out | shape | rule |
+    /// |---|---|---|---|
+    /// | `p` | in | scalar | the handle |
+    /// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
+    /// | `rows` | in | scalar | number of rows, 0 adds none |
+    /// | `row_ptr` | in | rows + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+    /// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
+    /// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
+    /// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
+    /// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
+    /// | `rhs` | in | rows | c or h, length; c may be +infinity; NULL: zeros |
+    /// | `first` | out | scalar | number of the first row added, from 0; may be NULL |
+    ///
     /// # Safety
-    /// The arrays have the documented shapes.
-    unsafe fn add(&self, p: *mut feti_problem, call: Call) -> i32 {
+    /// The arrays have the given shapes.
+    fn feti_rows_add_i32, feti_rows_add_i64(
+        p: *mut feti_problem, kind: i32, rows: i64, row_ptr: *const I, body: *const I, dof: *const I,
+        val: *const f64, base: i32, rhs: *const f64, first: *mut i64,
+    ) |call| {
         enter(p, call, |problem| {
-            let kind = row_kind(self.kind, "feti_friction_add_i32 or _i64 adds them with these")?;
-            let (rows, base) = (count(self.rows, "rows")?, base(self.base)?);
+            let kind = row_kind(kind, "feti_friction_add_i32 or _i64 adds them with these")?;
+            let (rows, base) = (count(rows, "rows")?, base_of(base)?);
             // SAFETY: NULL or room for one number guaranteed by the caller.
-            let first = unsafe { Output::optional(self.first, 1, "first") }?;
+            let first = unsafe { Output::optional(first, 1, "first") }?;
             // SAFETY: rows + 1 positions guaranteed by the caller.
-            let ptr = unsafe { pointers(self.row_ptr, rows, base) }?;
+            let ptr = unsafe { pointers(row_ptr, rows, base) }?;
             let entries = ptr.last().copied().unwrap_or(0);
             let _room = problem.headroom_for_rows(rows, entries)?;
-            let given = (!self.body.is_null()).then_some(self.body);
+            let given = (!body.is_null()).then_some(body);
             // SAFETY: the last position is the number of entries.
             let body = given.map(|body| unsafe { numbers(body, entries, base, "body") }).transpose()?;
             // SAFETY: the last position is the number of entries.
             let (dof, val) =
-                unsafe { (numbers(self.dof, entries, base, "dof")?, input(self.val, entries, "val")?) };
+                unsafe { (numbers(dof, entries, base, "dof")?, input(val, entries, "val")?) };
             // SAFETY: NULL or one number per row guaranteed by the caller.
-            let rhs = unsafe { input_or_none(self.rhs, rows, "rhs") }?;
+            let rhs = unsafe { input_or_none(rhs, rows, "rhs") }?;
             let given = RowsInput { ptr: &ptr, body: body.as_deref(), dof: &dof, val, rhs };
             first.set(problem.add_rows(kind, given).map_err(|error| error.index_from(base))? as i64);
             Ok(())
@@ -133,7 +61,7 @@ impl<I: Index> HostRows<I> {
 /// Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
 ///
 /// c = +infinity turns a contact row off, and a finite c turns it on again. Either change drops the last answer; the
-/// factors of the bodies stay valid. The numbers are copied. After a failure all right-hand sides are unchanged.
+/// factors of the bodies stay valid.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -165,9 +93,8 @@ pub unsafe extern "C" fn feti_rows_rhs(
 ///
 /// A contact row then carries the force k (B u - c) if this value is positive, which is a linear law of pressure and
 /// overclosure. A compliant equality row is an elastic support or a cohesive bond. Newly added rows are rigid, 1/k = 0.
-/// If a row is multiplied by t, its compliance is multiplied by t^2. The numbers are copied and stay with their rows
-/// until they are replaced or the rows are cleared. The factors of the bodies stay valid; the last answer is dropped.
-/// After a failure all compliances are unchanged.
+/// If a row is multiplied by t, its compliance is multiplied by t^2. The numbers stay with their rows until they are
+/// replaced or the rows are cleared. The factors of the bodies stay valid; the last answer is dropped.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -9,8 +9,7 @@ use feti_contact::solver::{Candidate, Certificate, Problem, Report, Sizes};
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.
 ///
-/// feti_solve calls this function when necessary; called alone, it finds errors in the bodies early. After a failure all
-/// data that was given is kept and can be corrected.
+/// feti_solve calls this function when necessary; called alone, it finds errors in the bodies early.
 ///
 /// FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of a body is not the one
 /// that was given, or cannot be found; FETI_INDEFINITE if a matrix is indefinite, with body, unknown and pivot or
@@ -32,12 +31,11 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 
 /// Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
 ///
-/// The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and the other functions for
-/// results. An answer exists if the status is not negative, unless the call was cancelled or ran out of time before the
-/// first step. `info` is written in any case, with NaN for values that are unknown after a failure. After a failure all
-/// data that was given is kept and can be corrected, except after FETI_INTERNAL. If rows and loads leave motions
-/// undetermined (`undetermined`), the answer is the admissible one nearest to rest: the one with the least sum of `K_ii
-/// u_i^2`.
+/// The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and the other functions
+/// for results. An answer exists if the status is not negative, unless the call was cancelled or ran out of time before
+/// the first step. `info` is written in any case, with NaN for values that are unknown after a failure. If rows and
+/// loads leave motions undetermined (`undetermined`), the answer is the admissible one nearest to rest: the one with
+/// the least sum of `K_ii u_i^2`.
 ///
 /// Groups of bodies that are not joined by a row with a finite gap are separate problems. Each group is solved to its own
 /// accuracy, several at a time if threads are available. The function returns the worst status of all groups; counts and
@@ -90,10 +88,10 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
 ///
 /// Every entry belongs to the worst body or the worst row, measured against its own forces and deformation; the
 /// certificate names this body or row. Glue (option glue) is judged like equality rows; its forces are not an argument,
-/// and the library uses the glue forces that fit the answer best. Rows that never close, c = +infinity, are left out, and
-/// their lambda counts as 0. At nodes with friction (feti_friction_add_i32 or _i64) the tangential force counts as 0;
-/// feti_check_friction takes tangential forces into account. The call does not store the answer; the answer of the last
-/// solve is kept. Runs feti_setup when it is due, because it needs the null spaces. After a failure nothing is written.
+/// and the library uses the glue forces that fit the answer best. Rows that never close, c = +infinity, are left out,
+/// and their lambda counts as 0. At nodes with friction (feti_friction_add_i32 or _i64) the tangential force counts as
+/// 0; feti_check_friction takes tangential forces into account. The call does not store the answer; the answer of the
+/// last solve is kept. Runs feti_setup when it is due, because it needs the null spaces.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -133,9 +131,9 @@ pub unsafe extern "C" fn feti_check(
 /// Verifies an answer with tangential forces against the current problem; the answer may come from another program.
 ///
 /// The call works like feti_check. In addition, the entries of friction judge at every node the force lambda_t against
-/// the friction law and the slip `T u - s_old - C_t lambda_t` with the current s_old, which after feti_friction_commit is
-/// that of the next step. Nodes that cannot carry a tangential force (bound 0 and no contact row that may close) are left
-/// out. After a failure nothing is written.
+/// the friction law and the slip `T u - s_old - C_t lambda_t` with the current s_old, which after feti_friction_commit
+/// is that of the next step. Nodes that cannot carry a tangential force (bound 0 and no contact row that may close) are
+/// left out.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -8,8 +8,8 @@ use crate::rows::multiplier_kind;
 ///
 /// The next solve starts from these multipliers, regardless of option start. They are used once, whatever the outcome;
 /// every other solve starts as the option says. Rows with a zero start without a force, so the multipliers also carry
-/// over the contact state of an earlier answer. A kind of rows without start values starts from zero. A change of rows or
-/// bodies drops the start values. After a failure the earlier start values stay valid.
+/// over the contact state of an earlier answer. A kind of rows without start values starts from zero. A change of rows
+/// or bodies drops the start values.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -40,7 +40,7 @@ pub unsafe extern "C" fn feti_start_from(
 ///
 /// For nodes with friction the state has the laws, the compliances and s_old. Factors are not copied and the entries of
 /// the rows are shared, so a state costs no more memory than its vectors. A state exists until it is dropped or the
-/// problem is destroyed; its number is never used again. After a failure nothing is saved.
+/// problem is destroyed; its number is never used again.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -71,18 +71,18 @@ pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> 
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `id` | in | scalar | number of the state |
+/// | `id` | in | scalar | number of the state, from 0 |
 #[no_mangle]
 pub extern "C" fn feti_state_restore(p: *mut feti_problem, id: i64) -> i32 {
     enter(p, call!(feti_state_restore(p, id)), |problem| problem.restore_state(self::id(id, "id")?))
 }
 
-/// Drops a saved state. After a failure nothing is dropped.
+/// Drops a saved state.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `id` | in | scalar | number of the state |
+/// | `id` | in | scalar | number of the state, from 0 |
 #[no_mangle]
 pub extern "C" fn feti_state_drop(p: *mut feti_problem, id: i64) -> i32 {
     enter(p, call!(feti_state_drop(p, id)), |problem| problem.drop_state(self::id(id, "id")?))

@@ -11,7 +11,7 @@ use feti_contact::solver::Problem;
 /// Applies the generalised inverse of a body, `Y = K+ X`.
 ///
 /// Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE if the body is cut into pieces
-/// (feti_body_mesh_i32 or _i64). After a failure nothing is written.
+/// (feti_body_mesh_i32 or _i64).
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -61,9 +61,8 @@ pub unsafe extern "C" fn feti_body_kplus(
 /// Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
 ///
 /// C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid rows. F does not include the
-/// tangential rows of nodes with friction. Runs feti_setup when it is due. `x` and `y` may be the same array. FETI_STATE
-/// if a body is cut into pieces (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue). After a failure nothing
-/// is written.
+/// tangential rows of nodes with friction. Runs feti_setup when it is due. `x` and `y` may be the same array.
+/// FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue).
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -91,7 +90,7 @@ pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const
 /// Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
 ///
 /// Runs feti_setup when it is due. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or unknowns are
-/// glued (option glue). After a failure nothing is written.
+/// glued (option glue).
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

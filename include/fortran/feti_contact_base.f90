@@ -32,7 +32,7 @@ module feti_contact_base
   public :: problem_create, problem_destroy, problem_error
   public :: last_error, last_error_detail, status_name, status_text
   public :: version, version_number
-  public :: handle_of, body_index, address_of, finish, refuse, c_text, f_text
+  public :: handle_of, body_index, address_of, size_of, finish, refuse, c_text, f_text
 
   abstract interface
     !> A function of the host that is called for every step; it returns 0 to continue, > 0 to cancel, < 0 to report a
@@ -292,6 +292,15 @@ contains
     address_of = c_null_ptr
     if (.not. present(values)) return
     if (size(values) > 0) address_of = c_loc(values)
+  end function
+
+  !> Size of an array, or another number if the array is absent.
+  recursive pure integer(c_int64_t) function size_of(values, absent)
+    real(c_double), intent(in), optional :: values(:)
+    integer(c_int64_t), intent(in) :: absent
+
+    size_of = absent
+    if (present(values)) size_of = size(values, kind=c_int64_t)
   end function
 
   !> The progress and log functions of a problem whose handle the library has just accepted.

@@ -14,28 +14,28 @@ module feti_contact_f77_base
   public
   include 'feti_contact_f77.inc'
 
-  !> A matrix by rows, with the index arrays of the host.
-  interface stiffness_by_rows
+  !> For index arrays of the host.
+  interface feti_body_stiffness
     procedure feti_body_stiffness_i32, feti_body_stiffness_i64
   end interface
-  !> A matrix by rows with a separate diagonal.
-  interface stiffness_split
+  !> For index arrays of the host.
+  interface feti_body_stiffness_split
     procedure feti_body_stiffness_split_i32, feti_body_stiffness_split_i64
   end interface
-  !> Elements, with the index arrays of the host.
-  interface mesh_of_body
+  !> For index arrays of the host.
+  interface feti_body_mesh
     procedure feti_body_mesh_i32, feti_body_mesh_i64
   end interface
-  !> Numbers of the host, in its INTEGER.
-  interface numbering
+  !> For index arrays of the host.
+  interface feti_body_numbering
     procedure feti_body_numbering_i32, feti_body_numbering_i64
   end interface
-  !> Rows, with the index arrays of the host.
-  interface add_rows
+  !> For index arrays of the host.
+  interface feti_rows_add
     procedure feti_rows_add_i32, feti_rows_add_i64
   end interface
-  !> Nodes with friction, with the index arrays of the host.
-  interface add_friction
+  !> For index arrays of the host.
+  interface feti_friction_add
     procedure feti_friction_add_i32, feti_friction_add_i64
   end interface
 
@@ -159,21 +159,6 @@ contains
     do k = 1, min(n, size(found))
       x(k) = found(k)
     end do
-  end subroutine
-
-  !> A certificate: icert(ni), rcert(nr).
-  recursive subroutine give_certificate(found, ni, icert, nr, rcert)
-    type(feti_certificate), intent(in) :: found
-    integer, intent(in) :: ni, nr
-    integer, intent(inout) :: icert(*)
-    real(c_double), intent(inout) :: rcert(*)
-
-    call give([int(found%passed, c_int64_t), found%equilibrium_body + 1, found%balance_body + 1, found%penetration_row + 1, &
-      found%equality_row + 1, found%force_row + 1, found%complementarity_row + 1, found%friction_cone_node + 1, &
-      found%friction_work_node + 1, found%friction_stick_node + 1], ni, icert)
-    call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, found%negative_force, &
-      found%complementarity, found%duality_gap, found%limit, found%friction_cone, found%friction_work, found%friction_stick], &
-      nr, rcert)
   end subroutine
 
   !> The status for the host: argument k of the C function is argument place(k) of the subroutine; if place is absent,

@@ -1,5 +1,5 @@
-!> FORTRAN 77 interface: problems, errors, version. See docs/fortran77.md. The last argument of every subroutine is ierr,
-!> the status.
+!> FORTRAN 77 interface: what is not generated into feti_contact_f77_calls.f90. See docs/fortran77.md. The last argument of
+!> almost every subroutine is ierr, the status.
 
 !> Creates a problem: ip, its handle. Texts and positions count from 1. The check words iword = 1, 2 and dword = 1, 2 show
 !> the sizes of the host's INTEGER and DOUBLE PRECISION. If they differ from the sizes of this interface, ierr, written in
@@ -83,45 +83,6 @@ recursive subroutine fterr(ierr, text)
   end if
 end subroutine
 
-!> Text of the problem's last error and its full length l; blank if no error has occurred. May be called from any thread,
-!> also while another call on the problem runs.
-recursive subroutine ftperr(ip, text, l, ierr)
-  use feti_contact_f77_base
-  implicit none
-  integer, intent(in) :: ip
-  character(len=*), intent(inout) :: text
-  integer, intent(inout) :: l
-  integer, intent(out) :: ierr
-  character(kind=c_char), target :: buffer(len(text) + 1)
-  integer(c_int64_t) :: length
-
-  ierr = told(feti_problem_error(handle(ip), c_loc(buffer), size(buffer, kind=c_int64_t), length))
-  if (ierr == FETI_OK) call fit(length, l, ierr)
-  if (ierr == FETI_OK) text = f_text(c_loc(buffer))
-end subroutine
-
-!> Details of the last error of this thread: idet(ni) and rdet(nr), positions FTDSTA to FTDNOD, FTDVAL, FTDLIM; name: the
-!> C function, to whose arguments idet(FTDARG) refers. Numbers count from 1; 0: does not apply.
-recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
-  use feti_contact_f77_base
-  implicit none
-  integer, intent(in) :: ni, nr
-  integer, intent(inout) :: idet(*)
-  real(c_double), intent(inout) :: rdet(*)
-  character(len=*), intent(inout) :: name
-  integer, intent(out) :: ierr
-  type(feti_error_detail), target :: found
-
-  found%struct_size = storage_size(found, c_int64_t) / 8
-  ierr = told(feti_last_error_detail(found))
-  if (ierr /= FETI_OK) return
-  call give([int(found%status, c_int64_t), int(found%argument, c_int64_t), found%body + 1, found%component + 1, &
-    found%dof + 1, found%row + 1, found%entry + 1, found%element + 1, found%node + 1], &
-    ni, idet)
-  call give_reals([found%value, found%limit], nr, rdet)
-  name = f_text(c_loc(found%function))
-end subroutine
-
 !> Name of a status, such as FETI_LOAD_NOT_HELD for FTELNH.
 recursive subroutine ftsnam(istat, text)
   use feti_contact_f77_base
@@ -155,4 +116,75 @@ recursive subroutine ftvers(text, number)
 
   text = f_text(feti_version())
   number = int(feti_version_number())
+end subroutine
+
+!> Number of options.
+recursive subroutine ftoptn(n)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(out) :: n
+
+  n = clipped(feti_option_count())
+end subroutine
+
+!> Positions of the unknowns: node(n), any label of 32 bits, equal for the unknowns of one node; idir(n), 1 to 3
+!> displacement, 4 to 6 rotation; xyz(ldx,n), the first idim numbers of a column, length.
+recursive subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, idim, n, node(*), idir(*), ldx
+  real(c_double), intent(in) :: xyz(*)
+  integer, intent(out) :: ierr
+  integer(c_int32_t), allocatable :: nodes(:), directions(:)
+  integer :: i, refused
+
+  allocate (nodes(readable(ip, n)), directions(readable(ip, n)), stat=refused)
+  if (refused /= 0) then
+    ierr = FTEMEM
+    return
+  end if
+  ierr = FETI_OK
+  do i = 1, size(nodes)
+    nodes(i) = narrow(node(i))
+    directions(i) = narrow(idir(i))
+    if (int(nodes(i), c_int64_t) /= wide(node(i))) ierr = FTEFIT
+  end do
+  if (ierr == FETI_OK) ierr = told(feti_body_coordinates(handle(ip), from_zero(ibody), narrow(idim), wide(n), nodes, &
+    directions, xyz, wide(ldx)))
+end subroutine
+
+!> Chooses the unknowns that K+ holds: idof(nr); nr = 0: the library chooses them again.
+recursive subroutine ftbfxs(ip, ibody, nr, idof, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, nr, idof(*)
+  integer, intent(out) :: ierr
+  integer(c_int64_t), allocatable, target :: numbers(:)
+  integer :: refused
+
+  ierr = FTEMEM
+  allocate (numbers(max(nr, 1)), stat=refused)
+  if (refused /= 0) return
+  numbers = 0
+  if (nr > 0) numbers(:nr) = int(idof(:nr), c_int64_t) - 1
+  ierr = told(feti_body_fixing_set(handle(ip), from_zero(ibody), wide(nr), c_loc(numbers)))
+end subroutine
+
+!> Numbers of bodies, of unknowns of all bodies, of contact rows, of equality rows.
+recursive subroutine ftcnts(ip, nbody, n, m, me, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip
+  integer, intent(inout) :: nbody, n, m, me
+  integer, intent(out) :: ierr
+  integer(c_int64_t), target :: count(4)
+  integer :: numbers(4)
+
+  ierr = told(feti_counts(handle(ip), c_loc(count(1)), c_loc(count(2)), c_loc(count(3)), c_loc(count(4))))
+  if (ierr == FETI_OK) call fit_all(count, 4, numbers, ierr)
+  if (ierr /= FETI_OK) return
+  nbody = numbers(1)
+  n = numbers(2)
+  m = numbers(3)
+  me = numbers(4)
 end subroutine

@@ -7,8 +7,8 @@ use feti_contact::solver::{Modes, Problem};
 
 /// Adds a body with `n` unknowns.
 ///
-/// Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW if all bodies together would have more
-/// than 2^63 - 1 unknowns. After a failure nothing is added.
+/// Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW if all bodies together would have
+/// more than 2^63 - 1 unknowns.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -33,10 +33,10 @@ const FEW: usize = 12;
 
 /// Gives position and direction of every unknown of a body; the library computes candidates for the null space from them.
 ///
-/// The data are copied; another call replaces them. If you give neither coordinates nor a null space, the library finds
-/// the null space from K. A null space given by feti_body_null_space takes precedence over the coordinates. If K has a
-/// small positive or negative stiffness along the rigid body motions, see feti_body_coordinates_flags. Shells and beams
-/// list a node again for its rotations. After a failure the body keeps its previous data.
+/// Another call replaces the data. If you give neither coordinates nor a null space, the library finds the null space
+/// from K. A null space given by feti_body_null_space takes precedence over the coordinates. If K has a small positive
+/// or negative stiffness along the rigid body motions, see feti_body_coordinates_flags. Shells and beams list a node
+/// again for its rotations.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -90,14 +90,14 @@ pub(super) fn modes(flags: i32) -> Result<Modes> {
 /// as motions that K resists weakly.
 ///
 /// The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given before or after this
-/// call; the default is FETI_CANDIDATES. With FETI_EXACT you declare that the body floats as a whole: feti_setup refuses the
-/// body, and names the unknown, if K resists a rigid body motion by more than rounding, for example because a coefficient is
-/// missing. With FETI_SOFT, weak springs, rounding of the entries of K, geometric stiffness
-/// and supports may give the motions a positive or negative stiffness, and the motions need not be exact. The library
+/// call; the default is FETI_CANDIDATES. With FETI_EXACT you declare that the body floats as a whole: feti_setup
+/// refuses the body, and names the unknown, if K resists a rigid body motion by more than rounding, for example because
+/// a coefficient is missing. With FETI_SOFT, weak springs, rounding of the entries of K, geometric stiffness and
+/// supports may give the motions a positive or negative stiffness, and the motions need not be exact. The library
 /// computes the motions and their stiffness from K and takes them into account exactly, as it does for motions given to
-/// feti_body_null_space with FETI_SOFT. That function also describes what happens if K is indefinite or has further null
-/// vectors. The flag has no effect without coordinates or if a null space was given. FETI_UNSUPPORTED from feti_setup if the host provides K+
-/// (feti_body_operator). After a failure the body keeps its previous flag.
+/// feti_body_null_space with FETI_SOFT. That function also describes what happens if K is indefinite or has further
+/// null vectors. The flag has no effect without coordinates or if a null space was given. FETI_UNSUPPORTED from
+/// feti_setup if the host provides K+ (feti_body_operator).
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -113,11 +113,11 @@ pub extern "C" fn feti_body_coordinates_flags(p: *mut feti_problem, body: i64, f
 
 /// Gives the load of a body.
 ///
-/// The load is copied and stays valid until the next call replaces it; without a call the load of a body is zero. With
-/// FETI_ALL the array holds the loads of all bodies. If the bodies have numbers of the host, the array uses these
-/// numbers, and entries that belong to no unknown are ignored; otherwise it holds one body after the other. If several
-/// unknowns share one number (option glue), the load acts on the unknown of the first body. FETI_STATE with FETI_ALL if
-/// some bodies have numbers of the host and others have none. After a failure all loads are unchanged.
+/// The load stays valid until the next call replaces it; without a call the load of a body is zero. With FETI_ALL the
+/// array holds the loads of all bodies. If the bodies have numbers of the host, the array uses these numbers, and
+/// entries that belong to no unknown are ignored; otherwise it holds one body after the other. If several unknowns
+/// share one number (option glue), the load acts on the unknown of the first body. FETI_STATE with FETI_ALL if some
+/// bodies have numbers of the host and others have none.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -10,8 +10,8 @@ use feti_contact::solver::{BodyFacts, Doubt, Origin};
 
 /// Reads the connected part of every unknown of a body.
 ///
-/// A body may have several parts that no nonzero entry of K couples. The parts are numbered from 0 in the order of their
-/// first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing is written.
+/// A body may have several parts that no nonzero entry of K couples. The parts are numbered from 0 in the order of
+/// their first unknowns. FETI_STATE before the stiffness matrix is given.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn feti_body_components(
 
 /// Reads what is known about a body: its matrix, its null space, its factor and its dual operator.
 ///
-/// This call computes nothing except the connected parts. After a failure nothing is written.
+/// This call computes nothing except the connected parts.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -2,141 +2,74 @@
 
 use crate::bodies::body::body_of_order;
 use crate::boundary::{
-    base, call, column_major, count, element_pointers, enter, id, input, meaning, numbers, same, Call, Index,
+    base_of, call, column_major, count, element_pointers, enter, id, input, meaning, numbers, same, twins,
     Output,
 };
 use crate::header::types::{feti_problem, FETI_FULL, FETI_LOWER, FETI_UPPER};
 use feti_contact::error::Result;
 use feti_contact::solver::{ElementStorage, Problem};
 
-/// Gives the connectivity of the elements of a body, with 32-bit indices: the first step of giving K by elements.
-///
-/// Then give the element matrices with feti_body_element or feti_body_elements, each element once. Together they must
-/// form all of K; elements may have any size (springs to ground, penalties and multi-point constraints are small
-/// elements). The library adds each element matrix to the matrix of the body or, if the body is cut, of its piece, and
-/// keeps nothing else of the element. Loads, rows, results, certificate and diagnosis refer to the body; only
-/// feti_body_info and feti_body_pieces show the pieces.
-///
-/// Before the first matrix, give what the cut depends on: option `pieces` and the coordinates (feti_body_coordinates).
-/// Without coordinates the library cuts the body by its connectivity. The null spaces of the pieces come from the
-/// coordinates or are computed from K; a null space of the whole body (feti_body_null_space) is not used for them. If a
-/// body is cut, feti_body_kplus, feti_body_fixing, feti_dual_apply and feti_dual_rhs return FETI_STATE.
-///
-/// A number below `base` means a held unknown, as in the equation numbers of older codes: its row and column are left out
-/// of K. The number `base` - 1 - k means held unknown k (with base 0: -1, -2, ...; with base 1: 0, -1, ...). If
-/// feti_body_held_forces is not used, all held unknowns may have the same number. If held unknowns have prescribed values
-/// u0, the host subtracts ke u0 from the load.
-///
-/// The call replaces a matrix or functions given before. Another call with the same connectivity begins a new pass with
-/// the same pattern and the same cut. FETI_OVERFLOW if there are more than 2^32 - 1 unknowns and held unknowns.
-/// FETI_STATE from feti_setup and feti_solve if elements are missing; the error detail names the first missing element.
-/// After a failure the body keeps its previous data.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `elements` | in | scalar | number of elements, > 0 |
-/// | `ptr` | in | elements + 1 | element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of `dof`; starts with `base` |
-/// | `dof` | in | `ptr[elements] - base` | unknowns in the order of the rows of the element matrices, counted from `base`; below `base`: held |
-/// | `base` | in | scalar | 0 or 1: what `ptr` and `dof` count from |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_body_mesh_i32(
-    p: *mut feti_problem,
-    body: i64,
-    elements: i64,
-    ptr: *const i32,
-    dof: *const i32,
-    base: i32,
-) -> i32 {
-    let call = call!(feti_body_mesh_i32(p, body, elements, ptr, dof, base));
-    // SAFETY: shapes guaranteed by the caller.
-    unsafe { give(p, call, body, (elements, ptr, dof, base)) }
-}
-
-/// Gives the connectivity of the elements of a body, with 64-bit indices: the first step of giving K by elements.
-///
-/// Then give the element matrices with feti_body_element or feti_body_elements, each element once. Together they must
-/// form all of K; elements may have any size (springs to ground, penalties and multi-point constraints are small
-/// elements). The library adds each element matrix to the matrix of the body or, if the body is cut, of its piece, and
-/// keeps nothing else of the element. Loads, rows, results, certificate and diagnosis refer to the body; only
-/// feti_body_info and feti_body_pieces show the pieces.
-///
-/// Before the first matrix, give what the cut depends on: option `pieces` and the coordinates (feti_body_coordinates).
-/// Without coordinates the library cuts the body by its connectivity. The null spaces of the pieces come from the
-/// coordinates or are computed from K; a null space of the whole body (feti_body_null_space) is not used for them. If a
-/// body is cut, feti_body_kplus, feti_body_fixing, feti_dual_apply and feti_dual_rhs return FETI_STATE.
-///
-/// A number below `base` means a held unknown, as in the equation numbers of older codes: its row and column are left out
-/// of K. The number `base` - 1 - k means held unknown k (with base 0: -1, -2, ...; with base 1: 0, -1, ...). If
-/// feti_body_held_forces is not used, all held unknowns may have the same number. If held unknowns have prescribed values
-/// u0, the host subtracts ke u0 from the load.
-///
-/// The call replaces a matrix or functions given before. Another call with the same connectivity begins a new pass with
-/// the same pattern and the same cut. FETI_OVERFLOW if there are more than 2^32 - 1 unknowns and held unknowns.
-/// FETI_STATE from feti_setup and feti_solve if elements are missing; the error detail names the first missing element.
-/// After a failure the body keeps its previous data.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `elements` | in | scalar | number of elements, > 0 |
-/// | `ptr` | in | elements + 1 | element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of `dof`; starts with `base` |
-/// | `dof` | in | `ptr[elements] - base` | unknowns in the order of the rows of the element matrices, counted from `base`; below `base`: held |
-/// | `base` | in | scalar | 0 or 1: what `ptr` and `dof` count from |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_body_mesh_i64(
-    p: *mut feti_problem,
-    body: i64,
-    elements: i64,
-    ptr: *const i64,
-    dof: *const i64,
-    base: i32,
-) -> i32 {
-    let call = call!(feti_body_mesh_i64(p, body, elements, ptr, dof, base));
-    // SAFETY: shapes guaranteed by the caller.
-    unsafe { give(p, call, body, (elements, ptr, dof, base)) }
-}
-
-/// # Safety
-/// `given` is a number of elements with their positions, unknowns and base, of the documented shapes.
-unsafe fn give<I: Index>(
-    p: *mut feti_problem,
-    call: Call,
-    body: i64,
-    given: (i64, *const I, *const I, i32),
-) -> i32 {
-    enter(p, call, |problem| {
-        let (elements, ptr, dof, from) = given;
-        let body = id(body, "body")?;
-        problem.order(body)?;
-        let (elements, base) = (count(elements, "elements")?, base(from)?);
-        // SAFETY: elements + 1 positions guaranteed by the caller.
-        let ptr = unsafe { element_pointers(ptr, elements, base) }?;
-        let entries = ptr.last().copied().unwrap_or(0);
-        // SAFETY: the last position is the number of entries.
-        let dof = unsafe { numbers(dof, entries, base, "dof") }?;
-        problem.set_mesh(body, &ptr, &dof).map_err(|error| error.index_from(base))
-    })
+twins! {
+    /// Gives the connectivity of the elements of a body, with 32-bit indices: the first step of giving K by elements.
+    ///
+    /// Then give the element matrices with feti_body_element or feti_body_elements, each element once. Together they must
+    /// form all of K; elements may have any size (springs to ground, penalties and multi-point constraints are small
+    /// elements). The library adds each element matrix to the matrix of the body or, if the body is cut, of its piece, and
+    /// keeps nothing else of the element. Loads, rows, results, certificate and diagnosis refer to the body; only
+    /// feti_body_info and feti_body_pieces show the pieces.
+    ///
+    /// Before the first matrix, give what the cut depends on: option `pieces` and the coordinates (feti_body_coordinates).
+    /// Without coordinates the library cuts the body by its connectivity. The null spaces of the pieces come from the
+    /// coordinates or are computed from K; a null space of the whole body (feti_body_null_space) is not used for them. If a
+    /// body is cut, feti_body_kplus, feti_body_fixing, feti_dual_apply and feti_dual_rhs return FETI_STATE.
+    ///
+    /// A number below `base` means a held unknown, as in the equation numbers of older codes: its row and column are left out
+    /// of K. The number `base` - 1 - k means held unknown k (with base 0: -1, -2, ...; with base 1: 0, -1, ...). If
+    /// feti_body_held_forces is not used, all held unknowns may have the same number. If held unknowns have prescribed values
+    /// u0, the host subtracts ke u0 from the load.
+    ///
+    /// The call replaces a matrix or functions given before. Another call with the same connectivity begins a new pass
+    /// with the same pattern and the same cut. FETI_OVERFLOW if there are more than 2^32 - 1 unknowns and held
+    /// unknowns. FETI_STATE from feti_setup and feti_solve if elements are missing; the error detail names the first
+    /// missing element.
+    ///
+    /// | argument | in/out | shape | rule |
+    /// |---|---|---|---|
+    /// | `p` | in | scalar | the handle |
+    /// | `body` | in | scalar | number of the body, from 0 |
+    /// | `elements` | in | scalar | number of elements, > 0 |
+    /// | `ptr` | in | elements + 1 | element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of `dof`; starts with `base` |
+    /// | `dof` | in | `ptr[elements] - base` | unknowns in the order of the rows of the element matrices, counted from `base`; below `base`: held |
+    /// | `base` | in | scalar | 0 or 1: what `ptr` and `dof` count from |
+    ///
+    /// # Safety
+    /// The arrays have the given shapes.
+    fn feti_body_mesh_i32, feti_body_mesh_i64(
+        p: *mut feti_problem, body: i64, elements: i64, ptr: *const I, dof: *const I, base: i32,
+    ) |call| {
+        enter(p, call, |problem| {
+            let body = id(body, "body")?;
+            problem.order(body)?;
+            let (elements, base) = (count(elements, "elements")?, base_of(base)?);
+            // SAFETY: elements + 1 positions guaranteed by the caller.
+            let ptr = unsafe { element_pointers(ptr, elements, base) }?;
+            let entries = ptr.last().copied().unwrap_or(0);
+            // SAFETY: the last position is the number of entries.
+            let dof = unsafe { numbers(dof, entries, base, "dof") }?;
+            problem.set_mesh(body, &ptr, &dof).map_err(|error| error.index_from(base))
+        })
+    }
 }
 
 /// Adds the stiffness matrix of one element; call it from the host's assembly loop.
 ///
 /// The library adds the matrix at once and does not keep it. The matrix must be symmetric within option
-/// symmetry_tolerance; the library averages ke_ij and ke_ji. An element matrix may be indefinite: feti_setup checks only
-/// the assembled matrix. Elements may come in any order, each once. FETI_STATE if the element was given already, and
-/// before feti_body_mesh. With the last element the matrix of the body is complete. The next element begins a new pass:
-/// new values with the same pattern and cut, without a new analysis, as in a Newton loop. Until this pass is complete the
-/// body has no matrix. If several threads assemble at the same time, such calls return FETI_BUSY: the threads should
-/// collect blocks for feti_body_elements. The error detail names the element. After a failure nothing of the element is
-/// added.
+/// symmetry_tolerance; the library averages ke_ij and ke_ji. An element matrix may be indefinite: feti_setup checks
+/// only the assembled matrix. Elements may come in any order, each once. FETI_STATE if the element was given already,
+/// and before feti_body_mesh. With the last element the matrix of the body is complete. The next element begins a new
+/// pass: new values with the same pattern and cut, without a new analysis, as in a Newton loop. Until this pass is
+/// complete the body has no matrix. If several threads assemble at the same time, such calls return FETI_BUSY: the
+/// threads should collect blocks for feti_body_elements. The error detail names the element.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -175,8 +108,8 @@ pub unsafe extern "C" fn feti_body_element(
 /// FETI_LOWER it is the lower triangle column by column, as in the elemental format of MUMPS (this equals the upper
 /// triangle row by row); with FETI_UPPER it is the upper triangle column by column. Each triangle has n (n + 1) / 2
 /// numbers. The n of an element follows from feti_body_mesh; feti_body_elements_size returns how many numbers a block
-/// has. FETI_STATE if an element was given already, and before feti_body_mesh. The error detail names the element and the
-/// entry within its matrix. After a failure nothing of the block is added.
+/// has. FETI_STATE if an element was given already, and before feti_body_mesh. The error detail names the element and
+/// the entry within its matrix.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -208,7 +141,7 @@ pub unsafe extern "C" fn feti_body_elements(
 
 /// Returns how many numbers feti_body_elements expects for a block of elements.
 ///
-/// FETI_STATE before feti_body_mesh. After a failure nothing is written.
+/// FETI_STATE before feti_body_mesh.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -262,10 +195,9 @@ fn block(
 /// Reads the forces on the held unknowns of a body in the last answer: K_hf u, their rows of K times the displacement.
 ///
 /// Held unknowns have numbers below `base` in feti_body_mesh_i32 or _i64: held unknown k has the number `base` - 1 - k.
-/// The result is the support reaction without two parts, which the host accounts for: the part of prescribed values (the
-/// host moved ke u0 to the load), which must be added, and loads on the held unknowns themselves, which must be
-/// subtracted. FETI_STATE if the body was not given by its elements, and if no solve has given an answer yet. After a
-/// failure nothing is written.
+/// The result is the support reaction without two parts, which the host accounts for: the part of prescribed values
+/// (the host moved ke u0 to the load), which must be added, and loads on the held unknowns themselves, which must be
+/// subtracted. FETI_STATE if the body was not given by its elements, and if no solve has given an answer yet.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -289,9 +221,8 @@ pub unsafe extern "C" fn feti_body_held_forces(p: *mut feti_problem, body: i64, 
 
 /// Reads the piece of every unknown of a body, for pictures and for choosing option `pieces`.
 ///
-/// Pieces count from 0. An unknown that belongs to several pieces gets the first one. If the body is not cut, all numbers
-/// are 0. FETI_STATE before the matrix of the body, or all of its elements, have been given. After a failure nothing is
-/// written.
+/// Pieces count from 0. An unknown that belongs to several pieces gets the first one. If the body is not cut, all
+/// numbers are 0. FETI_STATE before the matrix of the body, or all of its elements, have been given.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

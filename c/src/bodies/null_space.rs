@@ -9,16 +9,15 @@ use feti_contact::solver::Modes;
 
 /// Gives a basis of the null space of a body, candidates for the null space, or motions that K resists weakly.
 ///
-/// The basis is copied; another call replaces it. If you do not call this function, the coordinates of the unknowns give
-/// candidates (feti_body_coordinates); without coordinates the library finds the null space from K. feti_setup checks
-/// that `K R = 0` holds. With FETI_SOFT this equation need not hold: weak springs, rounding of the entries of K and
-/// geometric stiffness may give the motions a positive or negative stiffness, and diagonal entries of K may be negative.
-/// The columns then only choose the fixing unknowns; the library computes the motions and their stiffness from K and takes
-/// them into account exactly. If K is still indefinite or singular with these unknowns fixed, the library fixes up to six
-/// more, each with its own column in feti_body_null_space_get. FETI_UNSUPPORTED from feti_setup if the host provides K+
-/// (feti_body_operator); FETI_INDEFINITE from feti_setup if K has negative stiffness along more motions than that, and
-/// from feti_solve if the contact does not restrain a motion with negative stiffness. After a failure the body keeps its
-/// previous basis.
+/// Another call replaces the basis. If you do not call this function, the coordinates of the unknowns give candidates
+/// (feti_body_coordinates); without coordinates the library finds the null space from K. feti_setup checks that `K R =
+/// 0` holds. With FETI_SOFT this equation need not hold: weak springs, rounding of the entries of K and geometric
+/// stiffness may give the motions a positive or negative stiffness, and diagonal entries of K may be negative. The
+/// columns then only choose the fixing unknowns; the library computes the motions and their stiffness from K and takes
+/// them into account exactly. If K is still indefinite or singular with these unknowns fixed, the library fixes up to
+/// six more, each with its own column in feti_body_null_space_get. FETI_UNSUPPORTED from feti_setup if the host
+/// provides K+ (feti_body_operator); FETI_INDEFINITE from feti_setup if K has negative stiffness along more motions
+/// than that, and from feti_solve if the contact does not restrain a motion with negative stiffness.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -55,7 +54,7 @@ pub unsafe extern "C" fn feti_body_null_space(
 /// Says that a body has no null space: its supports hold it, K is not singular.
 ///
 /// As feti_body_null_space with no columns and FETI_EXACT; that K is not singular is checked in feti_setup. Calling
-/// feti_body_null_space afterwards replaces it. After a failure the body keeps what it had.
+/// feti_body_null_space afterwards replaces it.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -72,9 +71,8 @@ pub extern "C" fn feti_body_no_null_space(p: *mut feti_problem, body: i64) -> i3
 
 /// Reads the null space that the library uses for a body.
 ///
-/// Runs feti_setup when it is due. After a failure nothing is written.
-/// If K is not connected, the columns are those of one connected part after the other, zero on all other parts. Unknowns
-/// without stiffness that no row and no load touches have no column.
+/// Runs feti_setup when it is due. If K is not connected, the columns are those of one connected part after the other,
+/// zero on all other parts. Unknowns without stiffness that no row and no load touches have no column.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -123,8 +121,8 @@ pub unsafe extern "C" fn feti_body_null_space_get(
 
 /// Reads the fixing unknowns of a body: with them fixed, K has full rank.
 ///
-/// Runs feti_setup when it is due. FETI_UNSUPPORTED if the host provides K+ (feti_body_operator). FETI_STATE if the body
-/// is cut into pieces (feti_body_mesh_i32 or _i64). After a failure nothing is written.
+/// Runs feti_setup when it is due. FETI_UNSUPPORTED if the host provides K+ (feti_body_operator). FETI_STATE if the
+/// body is cut into pieces (feti_body_mesh_i32 or _i64).
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -153,9 +151,9 @@ pub unsafe extern "C" fn feti_body_fixing(p: *mut feti_problem, body: i64, r: i6
 
 /// Chooses the fixing unknowns of a body; otherwise the library chooses them.
 ///
-/// The choice affects the iterations of the paper's methods in printed units, but neither forces nor displacements. There
-/// must be as many fixing unknowns as the null space has dimensions, and they must hold every motion of the null space;
-/// feti_setup checks both. Another call replaces them. After a failure the body keeps its previous fixing unknowns.
+/// The choice affects the iterations of the paper's methods in printed units, but neither forces nor displacements.
+/// There must be as many fixing unknowns as the null space has dimensions, and they must hold every motion of the null
+/// space; feti_setup checks both. Another call replaces them.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

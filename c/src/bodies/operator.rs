@@ -30,8 +30,7 @@ use feti_contact::solver::{HostFunctions, HostProduct};
 /// The functions must not exit by longjmp or an exception, and must give bit-identical results for the same X.
 ///
 /// Another call replaces the functions and everything computed with them; make this call whenever K has changed. A
-/// stiffness matrix given later replaces the functions, and the functions replace a matrix given earlier. After a failure
-/// the body keeps its previous matrix or functions.
+/// stiffness matrix given later replaces the functions, and the functions replace a matrix given earlier.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

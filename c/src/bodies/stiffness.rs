@@ -2,186 +2,81 @@
 
 use crate::bodies::body::body_of_order;
 use crate::boundary::{
-    base, borrowed, call, column_major, enter, input, meaning, numbers, pointers, Call, Index,
+    base_of, borrowed, call, column_major, enter, input, meaning, numbers, pointers, twins, Call, Index,
 };
 use crate::header::types::{feti_problem, FETI_BORROW, FETI_COPY, FETI_FULL, FETI_LOWER, FETI_UPPER};
 use feti_contact::error::{Error, Result};
 use feti_contact::solver::{Columns, Problem, SparseInput, Storage};
 
-/// Gives the stiffness matrix K of a body by rows, with 32-bit indices.
-///
-/// The library copies the matrix; another call replaces pattern and values. The columns of a row may come in any order,
-/// but none twice. With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and
-/// K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the motions
-/// of the body are FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
-///
-/// With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is FETI_LOWER,
-/// columns ascend and every row ends with its diagonal entry. Otherwise it copies everything (see `borrowed` of
-/// feti_body_info). Borrowed arrays must stay readable and unchanged until the matrix is replaced or the problem is
-/// destroyed. There is one exception: the host may rewrite the values between two calls if its next call is
-/// feti_body_values with the same array.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
-/// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base` |
-/// | `val` | in | `row_ptr[n] - base` | entries of K, force per length |
-/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
-/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY or FETI_BORROW |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_body_stiffness_i32(
-    p: *mut feti_problem,
-    body: i64,
-    n: i64,
-    row_ptr: *const i32,
-    col: *const i32,
-    val: *const f64,
-    base: i32,
-    storage: i32,
-    flags: i32,
-) -> i32 {
-    let call = call!(feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags));
-    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes guaranteed by the caller.
-    unsafe { matrix.give(p, call, body, None) }
+twins! {
+    /// Gives the stiffness matrix K of a body by rows, with 32-bit indices.
+    ///
+    /// Another call replaces pattern and values. The columns of a row may come in any order, but none twice. With
+    /// FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and K_ji. A diagonal
+    /// entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the motions of the
+    /// body are FETI_SOFT (feti_body_null_space).
+    ///
+    /// With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is FETI_LOWER,
+    /// columns ascend and every row ends with its diagonal entry. Otherwise it copies everything (see `borrowed` of
+    /// feti_body_info). Borrowed arrays must stay readable and unchanged until the matrix is replaced or the problem is
+    /// destroyed. There is one exception: the host may rewrite the values between two calls if its next call is
+    /// feti_body_values with the same array.
+    ///
+    /// | argument | in/out | shape | rule |
+    /// |---|---|---|---|
+    /// | `p` | in | scalar | the handle |
+    /// | `body` | in | scalar | number of the body, from 0 |
+    /// | `n` | in | scalar | unknowns of the body |
+    /// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+    /// | `col` | in | `row_ptr[n] - base` | columns, counted from `base` |
+    /// | `val` | in | `row_ptr[n] - base` | entries of K, force per length |
+    /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
+    /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
+    /// | `flags` | in | scalar | FETI_COPY or FETI_BORROW |
+    ///
+    /// # Safety
+    /// The arrays have the given shapes.
+    fn feti_body_stiffness_i32, feti_body_stiffness_i64(
+        p: *mut feti_problem, body: i64, n: i64, row_ptr: *const I, col: *const I, val: *const f64, base: i32,
+        storage: i32, flags: i32,
+    ) |call| {
+        let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
+        // SAFETY: shapes guaranteed by the caller.
+        unsafe { matrix.give(p, call, body, None) }
+    }
 }
 
-/// Gives the stiffness matrix K of a body by rows, with 64-bit indices.
-///
-/// The library copies the matrix; another call replaces pattern and values. The columns of a row may come in any order,
-/// but none twice. With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and
-/// K_ji. A diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the motions
-/// of the body are FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
-///
-/// With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is FETI_LOWER,
-/// columns ascend and every row ends with its diagonal entry. Otherwise it copies everything (see `borrowed` of
-/// feti_body_info). Borrowed arrays must stay readable and unchanged until the matrix is replaced or the problem is
-/// destroyed. There is one exception: the host may rewrite the values between two calls if its next call is
-/// feti_body_values with the same array.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
-/// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base` |
-/// | `val` | in | `row_ptr[n] - base` | entries of K, force per length |
-/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
-/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY or FETI_BORROW |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_body_stiffness_i64(
-    p: *mut feti_problem,
-    body: i64,
-    n: i64,
-    row_ptr: *const i64,
-    col: *const i64,
-    val: *const f64,
-    base: i32,
-    storage: i32,
-    flags: i32,
-) -> i32 {
-    let call = call!(feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags));
-    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes guaranteed by the caller.
-    unsafe { matrix.give(p, call, body, None) }
-}
-
-/// Gives the stiffness matrix K of a body by rows with a separate diagonal, with 32-bit indices.
-///
-/// For codes that store the diagonal in a separate array. The library copies the matrix; another call replaces pattern
-/// and values. The columns of a row may come in any order, but none twice. With FETI_FULL, K must be symmetric within
-/// option symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0 in a row with
-/// other entries, is refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a
-/// failure the body keeps its previous matrix.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
-/// | `diag` | in | n | K_ii, force per length |
-/// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base`; never the diagonal entry |
-/// | `val` | in | `row_ptr[n] - base` | off-diagonal entries of K, force per length |
-/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
-/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which also copies: the library cannot use a matrix in this form directly |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_body_stiffness_split_i32(
-    p: *mut feti_problem,
-    body: i64,
-    n: i64,
-    diag: *const f64,
-    row_ptr: *const i32,
-    col: *const i32,
-    val: *const f64,
-    base: i32,
-    storage: i32,
-    flags: i32,
-) -> i32 {
-    let call =
-        call!(feti_body_stiffness_split_i32(p, body, n, diag, row_ptr, col, val, base, storage, flags));
-    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes guaranteed by the caller.
-    unsafe { matrix.give(p, call, body, Some(diag)) }
-}
-
-/// Gives the stiffness matrix K of a body by rows with a separate diagonal, with 64-bit indices.
-///
-/// For codes that store the diagonal in a separate array. The library copies the matrix; another call replaces pattern
-/// and values. The columns of a row may come in any order, but none twice. With FETI_FULL, K must be symmetric within
-/// option symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0 in a row with
-/// other entries, is refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space). After a
-/// failure the body keeps its previous matrix.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
-/// | `diag` | in | n | K_ii, force per length |
-/// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base`; never the diagonal entry |
-/// | `val` | in | `row_ptr[n] - base` | off-diagonal entries of K, force per length |
-/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
-/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which also copies: the library cannot use a matrix in this form directly |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_body_stiffness_split_i64(
-    p: *mut feti_problem,
-    body: i64,
-    n: i64,
-    diag: *const f64,
-    row_ptr: *const i64,
-    col: *const i64,
-    val: *const f64,
-    base: i32,
-    storage: i32,
-    flags: i32,
-) -> i32 {
-    let call =
-        call!(feti_body_stiffness_split_i64(p, body, n, diag, row_ptr, col, val, base, storage, flags));
-    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes guaranteed by the caller.
-    unsafe { matrix.give(p, call, body, Some(diag)) }
+twins! {
+    /// Gives the stiffness matrix K of a body by rows with a separate diagonal, with 32-bit indices.
+    ///
+    /// For codes that store the diagonal in a separate array. Another call replaces pattern and values. The columns of
+    /// a row may come in any order, but none twice. With FETI_FULL, K must be symmetric within option
+    /// symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that is negative, or 0 in a row with
+    /// other entries, is refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space).
+    ///
+    /// | argument | in/out | shape | rule |
+    /// |---|---|---|---|
+    /// | `p` | in | scalar | the handle |
+    /// | `body` | in | scalar | number of the body, from 0 |
+    /// | `n` | in | scalar | unknowns of the body |
+    /// | `diag` | in | n | K_ii, force per length |
+    /// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+    /// | `col` | in | `row_ptr[n] - base` | columns, counted from `base`; never the diagonal entry |
+    /// | `val` | in | `row_ptr[n] - base` | off-diagonal entries of K, force per length |
+    /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
+    /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
+    /// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which also copies: the library cannot use a matrix in this form directly |
+    ///
+    /// # Safety
+    /// The arrays have the given shapes.
+    fn feti_body_stiffness_split_i32, feti_body_stiffness_split_i64(
+        p: *mut feti_problem, body: i64, n: i64, diag: *const f64, row_ptr: *const I, col: *const I,
+        val: *const f64, base: i32, storage: i32, flags: i32,
+    ) |call| {
+        let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
+        // SAFETY: shapes guaranteed by the caller.
+        unsafe { matrix.give(p, call, body, Some(diag)) }
+    }
 }
 
 /// Arguments of the four functions above.
@@ -203,7 +98,7 @@ impl<I: Index> SparseMatrix<I> {
     unsafe fn give(&self, p: *mut feti_problem, call: Call, body: i64, diag: Option<*const f64>) -> i32 {
         enter(p, call, |problem| {
             let (body, n) = body_of_order(problem, body, self.n)?;
-            let (base, storage) = (base(self.base)?, storage_of(self.storage)?);
+            let (base, storage) = (base_of(self.base)?, storage_of(self.storage)?);
             let of_call = |error: Error| error.index_from(base);
             let flags = [(FETI_COPY, false), (FETI_BORROW, true)];
             let borrow = meaning(self.flags, "flags", &flags, "neither FETI_COPY nor FETI_BORROW")?;
@@ -249,9 +144,9 @@ impl<I: Index> SparseMatrix<I> {
 
 /// Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
 ///
-/// The library copies the matrix; another call replaces it. With FETI_LOWER and FETI_UPPER the other triangle is not
-/// read. A diagonal entry that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the motions
-/// of the body are FETI_SOFT (feti_body_null_space). After a failure the body keeps its previous matrix.
+/// Another call replaces the matrix. With FETI_LOWER and FETI_UPPER the other triangle is not read. A diagonal entry
+/// that is negative, or 0 in a row with other entries, is refused by feti_setup, unless the motions of the body are
+/// FETI_SOFT (feti_body_null_space).
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -8,8 +8,7 @@ use crate::header::types::feti_problem;
 ///
 /// The values are copied and checked like the first ones. The library keeps the symbolic analysis, so the next setup
 /// costs only a numeric factorisation of this body; bit-identical values cost nothing. The storage is the one of the
-/// first call. FETI_STATE if the matrix has not been given, or was given in another form. After a failure the body keeps
-/// its previous values.
+/// first call. FETI_STATE if the matrix has not been given, or was given in another form.
 ///
 /// Borrowed values (FETI_BORROW) are not copied: `val` is either the borrowed array, which the host has rewritten, or
 /// another array that replaces it. The values count as changed, also for other bodies that borrow the same array. After a
@@ -42,7 +41,7 @@ pub unsafe extern "C" fn feti_body_values(p: *mut feti_problem, body: i64, nnz: 
 /// Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
 ///
 /// The call works like feti_body_values, for a matrix with a separate diagonal. FETI_STATE if the matrix has not been
-/// given, or was given in another form. After a failure the body keeps its previous values.
+/// given, or was given in another form.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -76,8 +75,7 @@ pub unsafe extern "C" fn feti_body_values_split(
 /// Gives new values for a dense stiffness matrix.
 ///
 /// The matrix is copied and checked like the first one, in the same storage. If all zeros stay zero, the library keeps
-/// the symbolic analysis. FETI_STATE if the matrix has not been given, or was given in another form. After a failure the
-/// body keeps its previous matrix.
+/// the symbolic analysis. FETI_STATE if the matrix has not been given, or was given in another form.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -32,7 +32,7 @@ impl Index for i64 {
 }
 
 /// The base of the index arrays of a call: 0 or 1.
-pub fn base(value: i32) -> Result<i64> {
+pub fn base_of(value: i32) -> Result<i64> {
     meaning(value, "base", &[(0, 0), (1, 1)], "neither 0 nor 1")
 }
 
@@ -130,8 +130,8 @@ mod tests {
             let error = pointers_of(given, base).unwrap_err();
             assert_eq!((error.kind, error.place.row), (Kind::Argument("row_ptr"), Some(row)));
         }
-        assert_eq!(base(2).unwrap_err().kind, Kind::Argument("base"));
-        assert_eq!(base(-1).unwrap_err().kind, Kind::Argument("base"));
+        assert_eq!(base_of(2).unwrap_err().kind, Kind::Argument("base"));
+        assert_eq!(base_of(-1).unwrap_err().kind, Kind::Argument("base"));
     }
 
     #[test]

@@ -21,7 +21,7 @@ mod registry;
 mod sync;
 
 pub use arrays::*;
-pub(crate) use call::{call, Call};
+pub(crate) use call::{call, twins, Call};
 pub use error_store::{feti_last_error, feti_last_error_detail};
 pub use guard::*;
 pub use indices::*;

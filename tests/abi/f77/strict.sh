@@ -9,7 +9,7 @@ cd "$work"
 fc=${FC:-gfortran}
 for flags in "-O2" "-O0 -fcheck=all,no-array-temps" "-O2 -fdefault-integer-8"; do
     # shellcheck disable=SC2086 # one word per flag
-    $fc -std=f2018 -Wall -Wextra -pedantic -Werror -Werror=trampolines $flags -c "$1/feti_contact_c.f90" \
+    $fc -std=f2018 -Wall -Wextra -pedantic -Werror -Werror=trampolines -fimplicit-none $flags -c "$1/feti_contact_c.f90" \
         "$1/feti_contact_base.f90" "$1"/feti_contact_f77_*.f90
     shared=$(${NM:-nm} -A feti_contact*.o | awk '$2 ~ /^[bd]$/')
     [ -z "$shared" ] || { echo "variables that threads share: $shared"; exit 1; }

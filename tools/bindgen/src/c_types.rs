@@ -28,16 +28,24 @@ pub fn declared(ty: &Type, name: &str) -> String {
     }
 }
 
-/// `int32_t feti_gaps(feti_problem *p, int64_t rows, double *slack)`; one argument a line where it would pass `width`.
+/// `int32_t feti_gaps(feti_problem *p, int64_t rows, double *slack)`, broken between arguments where it would pass `width`.
 pub fn prototype(function: &Function, width: usize) -> String {
     let arguments: Vec<_> = function.arguments.iter().map(|a| declared(&a.ty, &a.name)).collect();
     let head = format!("{}(", declared(&function.result, &function.name));
     if arguments.is_empty() {
         return format!("{head}void)");
     }
-    let line = format!("{head}{})", arguments.join(", "));
-    if line.len() <= width {
-        return line;
+    let (mut out, mut line) = (String::new(), head.clone());
+    for (k, argument) in arguments.iter().enumerate() {
+        let end = if k + 1 < arguments.len() { "," } else { ")" };
+        if k > 0 && line.len() + argument.len() + 3 > width {
+            out.push_str(&line);
+            line = format!("\n{}", " ".repeat(head.len()));
+        } else if k > 0 {
+            line.push(' ');
+        }
+        line.push_str(argument);
+        line.push_str(end);
     }
-    format!("{head}{})", arguments.join(&format!(",\n{}", " ".repeat(head.len()))))
+    out + &line
 }

@@ -31,7 +31,7 @@ impl Direction {
 
     fn doxygen(self) -> &'static str {
         match self {
-            Direction::In => "[in]",
+            Direction::In => "",
             Direction::Out => "[out]",
             Direction::InOut => "[in,out]",
         }
@@ -52,6 +52,13 @@ impl Row {
     pub fn is_nullable(&self) -> bool {
         self.rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|word| word == "NULL")
     }
+
+    /// What an argument of this name is in every call; the header says it once.
+    fn is_of_every_call(&self) -> bool {
+        let rules =
+            [("p", "the handle"), ("body", "number of the body, from 0"), ("n", "unknowns of the body")];
+        rules.contains(&(self.argument.as_str(), self.rule.as_str()))
+    }
 }
 
 #[derive(Clone, Debug, Default)]
@@ -62,6 +69,11 @@ pub struct Doc {
 }
 
 impl Doc {
+    /// One sentence.
+    pub fn of(sentence: String) -> Self {
+        Doc { before: vec![sentence], ..Doc::default() }
+    }
+
     /// The first paragraph.
     pub fn summary(&self) -> String {
         self.paragraphs()[0].first().cloned().unwrap_or_default()
@@ -96,22 +108,20 @@ impl Doc {
         [of(&self.before), of(&self.after)]
     }
 
-    /// Plain lines of at most `width` characters; the table becomes one `@param[in] name (shape) rule` per argument.
+    /// Plain lines of at most `width` characters; the table becomes one `@param name (shape) rule` per argument, except for what
+    /// the rules of every call say.
     pub fn render(&self, width: usize) -> Vec<String> {
         let mut lines = paragraphs(&self.before, width);
-        let name_width = self.rows.iter().map(|row| row.argument.len()).max().unwrap_or(0);
-        let tag_width = self.rows.iter().map(|row| row.direction.doxygen().len()).max().unwrap_or(0);
-        let mut table = Vec::new();
-        for row in &self.rows {
-            let head = format!("@param{:tag_width$} {:name_width$} ", row.direction.doxygen(), row.argument);
-            let unit = if row.shape.is_empty() { String::new() } else { format!("({}) ", row.shape) };
-            table.extend(wrap(&head, &" ".repeat(head.len()), &format!("{unit}{}", row.rule), width));
+        let rows: Vec<_> = self.rows.iter().filter(|row| !row.is_of_every_call()).collect();
+        let name_width = rows.iter().map(|row| row.argument.len()).max().unwrap_or(0);
+        let tag_width = rows.iter().map(|row| row.direction.doxygen().len()).max().unwrap_or(0);
+        if !lines.is_empty() && !rows.is_empty() {
+            lines.push(String::new());
         }
-        for block in [table, paragraphs(&self.after, width)] {
-            if !lines.is_empty() && !block.is_empty() {
-                lines.push(String::new());
-            }
-            lines.extend(block);
+        for row in rows {
+            let head = format!("@param{:tag_width$} {:name_width$} ", row.direction.doxygen(), row.argument);
+            let shape = if row.shape == "scalar" { String::new() } else { format!("({}) ", row.shape) };
+            lines.extend(wrap(&head, &" ".repeat(head.len()), &format!("{shape}{}", row.rule), width));
         }
         lines
     }
@@ -199,7 +209,7 @@ fn is_list_item(text: &str) -> bool {
 }
 
 /// Breaks `text` between words: `head` leads the first line, `hang` the others.
-fn wrap(head: &str, hang: &str, text: &str, width: usize) -> Vec<String> {
+pub fn wrap(head: &str, hang: &str, text: &str, width: usize) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = head.to_string();
     let mut empty = true;
@@ -273,8 +283,7 @@ mod tests {
     fn rendering_wraps_and_lists_the_arguments() {
         let text = Doc::parse(&lines(TABLE)).unwrap().render(30);
         assert_eq!(text[0], "Solves.");
-        assert_eq!(text[2], "@param[in]  p (scalar) handle");
+        assert_eq!(text[2], "@param      p handle");
         assert!(text.iter().all(|line| line.len() <= 30), "{text:?}");
-        assert_eq!(text.last().unwrap(), "Keeps nothing.");
     }
 }

@@ -1,8 +1,9 @@
-//! Writes `include/feti_contact.h` and `include/fortran/feti_contact_c.f90` from one parse of `c/src`.
+//! Writes `include/feti_contact.h` and most of `include/fortran` from one parse of `c/src`: the interfaces of the C functions
+//! ([`fortran`]), the typed modules ([`typed`]) and the FORTRAN 77 interface ([`f77`]).
 //!
 //! `feti-bindgen [--check] [--calls FILE] [--trace FILE] [--pages DIR] [--source DIR] [--root DIR]`; `--check` writes nothing and fails on the first line
 //! that differs from the committed files. `--calls FILE` writes a C program for the tests instead ([`calls`]), as does `--trace` ([`trace`]);
-//! `--pages DIR` writes reference pages there ([`pages`], with the calls of FORTRAN 77, [`f77`]) and manual pages below DIR/man ([`man`]).
+//! `--pages DIR` writes reference pages there ([`pages`]) and manual pages below DIR/man ([`man`]).
 //! `--root` is the folder of the library's Cargo.toml, `--source` defaults to its c/src.
 //!
 //! All of them have the order of the job ([`order`]).
@@ -20,6 +21,7 @@ mod check;
 mod dictionary;
 mod doc;
 mod f77;
+mod f77_constants;
 mod faults;
 mod fortran;
 mod man;
@@ -28,14 +30,19 @@ mod order;
 mod overview;
 mod pages;
 mod parse;
+mod procedure;
+mod rules;
 mod statuses;
 #[cfg(test)]
 mod tests;
 mod trace;
 mod typed;
+mod typed_table;
 
 const HEADER: &str = "include/feti_contact.h";
 const FORTRAN: &str = "include/fortran/feti_contact_c.f90";
+const INCLUDE77: &str = "include/fortran/feti_contact_f77.inc";
+const FORTRAN77: &str = "include/fortran/feti_contact_f77_calls.f90";
 
 struct Options {
     check: bool,
@@ -96,13 +103,13 @@ fn run(options: &Options, sections: &[order::Section]) -> Result<(), String> {
     }
     let generated = generate(&sources, version)?;
     let mut drift = Vec::new();
-    for (name, text) in [HEADER, FORTRAN].iter().zip(generated) {
+    for (name, text) in &generated {
         let path = options.root.join(name);
         if options.check {
             let committed = fs::read_to_string(&path).unwrap_or_default();
-            drift.extend(check::first_difference(name, &committed, &text));
+            drift.extend(check::first_difference(name, &committed, text));
         } else {
-            write(&path, &text)?;
+            write(&path, text)?;
         }
     }
     if drift.is_empty() {
@@ -112,10 +119,17 @@ fn run(options: &Options, sections: &[order::Section]) -> Result<(), String> {
     }
 }
 
-/// Header and Fortran module of the given (file name, text) pairs.
-fn generate(sources: &[(String, String)], version: [u32; 3]) -> Result<[String; 2], String> {
+/// (path, text) of what the given (file name, text) pairs make, the header and the module of its interfaces first.
+fn generate(sources: &[(String, String)], version: [u32; 3]) -> Result<Vec<(String, String)>, String> {
     let api = checked(sources, version)?;
-    Ok([c_header::print(&api)?, fortran::print(&api)])
+    let texts = [
+        (HEADER, c_header::print(&api)),
+        (FORTRAN, fortran::print(&api)),
+        (FORTRAN77, f77::print(&api)),
+        (INCLUDE77, f77_constants::print(&api)),
+    ];
+    let texts = texts.map(|(path, text)| (path.to_string(), text));
+    Ok(texts.into_iter().chain(typed::print(&api)).collect())
 }
 
 fn checked(sources: &[(String, String)], version: [u32; 3]) -> Result<model::Api, String> {
@@ -125,16 +139,7 @@ fn checked(sources: &[(String, String)], version: [u32; 3]) -> Result<model::Api
 }
 
 fn write_pages(folder: &Path, root: &Path, api: &model::Api) -> Result<(), String> {
-    let (mut modules, mut face77) = (Vec::new(), Vec::new());
-    for path in files(&root.join("include/fortran"), "f90")? {
-        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        match name.strip_prefix("feti_contact").unwrap_or_default() {
-            "_c" => {} // generated
-            part if part.starts_with("_f77") => face77.push(read(&path)?),
-            _ => modules.push(read(&path)?),
-        }
-    }
-    let faces = pages::Faces { typed: typed::signatures(&modules), f77: f77::calls(&face77) };
+    let faces = pages::Faces { typed: typed::signatures(api, root), f77: f77::calls() };
     for (name, text) in pages::print(api, &faces) {
         write(&folder.join(name), &text)?;
     }

@@ -33,7 +33,7 @@ fn page(api: &Api, faces: &Faces, function: &Function) -> String {
         text(&prototype(function, 78))
     );
     if let Some(signatures) = faces.typed.get(name) {
-        let lines = signatures.iter().map(|signature| text(&signature.lines.join("\n")));
+        let lines = signatures.iter().map(|signature| text(&signature.join("\n")));
         let _ = write!(
             out,
             ".SS Fortran\n.nf\nuse feti_contact\n\n{}\n.fi\n",
@@ -47,8 +47,10 @@ fn page(api: &Api, faces: &Faces, function: &Function) -> String {
         let paragraphs: Vec<_> = before[1..].iter().map(|paragraph| text(paragraph)).collect();
         let _ = write!(out, ".SH DESCRIPTION\n{}\n", paragraphs.join("\n.PP\n"));
     }
-    write_arguments(&mut out, function);
-    if function.has_status() {
+    if !function.is_twin {
+        write_arguments(&mut out, function);
+    }
+    if function.has_status() && !function.is_twin {
         out.push_str(".SH RETURN VALUE\n");
         for (status, when) in results(api, function) {
             let _ = write!(out, ".TP\n.B {}\n{}\n", text(&status), text(&when));
@@ -86,7 +88,7 @@ fn overview(api: &Api) -> String {
          Minimises 1/2 u'Ku \\- f'u subject to B u <= c and H u = h, where K is the stiffness of several bodies, floating \
          ones included.\nA host creates a problem, adds bodies and rows, solves, and reads displacements and forces.\n\
          Every function but those that never fail returns a status: 0 for success, above 0 for a usable but incomplete \
-         answer, below 0 for a failure, whose text feti_last_error tells.\nLink with \\-lfeti_contact.\n.SH FUNCTIONS\n",
+         answer, below 0 for a failure, whose text feti_last_error tells. After a failure nothing is written or changed.\nLink with \\-lfeti_contact.\n.SH FUNCTIONS\n",
     );
     for group in order::groups(api).iter().filter(|group| !group.functions.is_empty()) {
         let _ = write!(out, ".SS {}\n{}\n", text(group.heading), text(group.says));

@@ -113,6 +113,8 @@ pub struct Function {
     pub doc: Doc,
     /// Name of the file it stands in.
     pub source: String,
+    /// Whether another function has its description: that for indices of 32 bits.
+    pub is_twin: bool,
 }
 
 impl Function {
@@ -154,6 +156,11 @@ pub struct Api {
 impl Api {
     pub fn find_struct(&self, name: &str) -> Option<&Struct> {
         self.structs.iter().find(|s| s.name == name)
+    }
+
+    /// A function that is known to exist.
+    pub fn function(&self, name: &str) -> &Function {
+        self.functions.iter().find(|function| function.name == name).expect("a function of C")
     }
 
     pub fn is_callback(&self, ty: &Type) -> bool {

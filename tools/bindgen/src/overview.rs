@@ -20,12 +20,21 @@ B u <= c and mu for H u = h: K u = f - B'lambda - H'mu.
 Functions return a status: 0 for success, above 0 for an answer that is usable but incomplete, below
 0 for a failure, whose text feti_last_error returns. Exceptions are feti_version..., feti_status_...,
 feti_option_count and feti_last_error. In the descriptions `FETI_STATE if ...` means that the function
-returns FETI_STATE in that case.
+returns FETI_STATE in that case. After a failure nothing is written or changed, and the call can be
+repeated with other arguments; only FETI_INTERNAL closes the problem.
 
-Bodies, unknowns and rows count from 0; arrays of indices count from their argument `base`. Sparse
-matrices are stored as compressed sparse rows, dense matrices by columns. The library copies what it
-is given, except with FETI_BORROW. It prints nothing. Only one call at a time may use a problem;
-several threads may use different problems. Any consistent set of units will do.
+`p` is the handle, `body` the number of a body, `n` the number of its unknowns. Bodies, unknowns and
+rows count from 0; arrays of indices count from their argument `base`. An array has the shape in
+parentheses; other pointers lead to one number, and may be NULL only if the description says so.
+Texts end with NUL. Sparse matrices are stored as compressed sparse rows, dense matrices by columns.
+The library copies what it is given, except with FETI_BORROW. Structs begin with `struct_size`, which
+the caller sets to their size. Functions of the host, and the data given with them, must exist until
+they are replaced or the problem is destroyed. The library prints nothing. Only one call at a time may
+use a problem; several threads may use different problems. Any consistent set of units will do.
+
+A first program needs ten functions: feti_problem_create, feti_body_add, feti_body_stiffness_i32,
+feti_body_load, feti_rows_add_i32, feti_solve, feti_displacement, feti_multipliers, feti_last_error,
+feti_problem_destroy.
 
 Example: a block of two unknowns and stiffness 4000 N/mm floats 0.5 mm before a wall, and a force of
 100 N on its rear pushes it there. It prints `force 100 N, rear 0.525 mm, front 0.5 mm`.

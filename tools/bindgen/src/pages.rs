@@ -53,8 +53,10 @@ fn page(api: &Api, faces: &Faces, function: &Function) -> String {
     let _ =
         write!(out, "\n## C\n\n```c\n#include <feti_contact.h>\n\n{};\n```\n", prototype(function, WIDTH));
     write_fortran(&mut out, api, faces, function);
-    write_arguments(&mut out, api, function);
-    write_results(&mut out, api, function);
+    if !function.is_twin {
+        write_arguments(&mut out, api, function);
+        write_results(&mut out, api, function);
+    }
     for paragraph in &after {
         let _ = write!(out, "\n{}\n", paragraph.replacen("Safety:", "**Safety.**", 1));
     }
@@ -67,7 +69,7 @@ fn write_fortran(out: &mut String, api: &Api, faces: &Faces, function: &Function
     if let Some(signatures) = faces.typed.get(&function.name) {
         out.push_str("\n```fortran\nuse feti_contact\n");
         for signature in signatures {
-            let _ = write!(out, "\n{}\n", signature.lines.join("\n"));
+            let _ = write!(out, "\n{}\n", signature.join("\n"));
         }
         out.push_str("```\n\nNumbers count from 1, sizes come from the arrays; without `stat` any status but FETI_OK ends the program. \
              As C has it:\n");
@@ -124,7 +126,7 @@ fn write_results(out: &mut String, api: &Api, function: &Function) {
     for (status, when) in statuses::results(api, function) {
         let _ = writeln!(out, "| `{status}` | {} |", cell(&linked(api, function, &when)));
     }
-    out.push_str("\nAll numbers: [statuses](statuses.md).\n");
+    out.push_str("\nAfter a failure nothing is written or changed. All numbers: [statuses](statuses.md).\n");
 }
 
 /// Whether the page of types has a heading of this name.
@@ -210,8 +212,7 @@ mod tests {
     }
 
     fn pages() -> BTreeMap<String, String> {
-        let signature =
-            Signature { name: "feti_add".into(), lines: vec!["subroutine feti_add(p, x)".into()] };
+        let signature = vec!["subroutine feti_add(p, x)".to_string()];
         let mut faces = Faces::default();
         faces.typed.insert("feti_add".to_string(), vec![signature]);
         faces.f77.insert("feti_add".to_string(), vec!["CALL FTADD(IP, IERR)".to_string()]);

@@ -35,6 +35,11 @@ fn add_item(api: &mut Api, item: &syn::Item) -> Result<(), String> {
             api.callbacks.push(callback(item)?);
         }
         syn::Item::Fn(item) => api.functions.extend(function(item)?),
+        syn::Item::Macro(item) if item.mac.path.is_ident("macro_rules") => {}
+        syn::Item::Macro(item) if item.mac.path.is_ident("twins") => {
+            let twins: Twins = item.mac.parse_body().map_err(|e| format!("twins: {e}"))?;
+            api.functions.extend(twins.functions()?);
+        }
         syn::Item::Macro(_) | syn::Item::Mod(_) if text(item).contains("no_mangle") => {
             return Err("an exported function inside a macro or an inner module is not seen".to_string());
         }
@@ -103,15 +108,59 @@ fn function(item: &syn::ItemFn) -> Result<Option<Function>, String> {
         (true, false) => return Err(format!("function `{name}`: #[no_mangle] without pub extern \"C\"")),
         (true, true) => {}
     }
-    let named = item.sig.inputs.iter().map(|input| match input {
+    exported_function(&item.sig, &item.attrs).map(Some)
+}
+
+fn exported_function(sig: &syn::Signature, attrs: &[syn::Attribute]) -> Result<Function, String> {
+    let name = sig.ident.to_string();
+    let named = sig.inputs.iter().map(|input| match input {
         syn::FnArg::Typed(typed) => match typed.pat.as_ref() {
             syn::Pat::Ident(ident) => Ok((name_of(&ident.ident), typed.ty.as_ref())),
             _ => Err(text(input)),
         },
         syn::FnArg::Receiver(_) => Err(text(input)),
     });
-    let (arguments, result, doc) = signature(&name, named, &item.sig.output, &item.attrs)?;
-    Ok(Some(Function { name, arguments, result, doc, source: String::new() }))
+    let (arguments, result, doc) = signature(&name, named, &sig.output, attrs)?;
+    Ok(Function { name, arguments, result, doc, source: String::new(), is_twin: false })
+}
+
+/// `twins! { /// ... fn feti_x_i32, feti_x_i64(list: *const I) |call| { ... } }`.
+struct Twins {
+    attrs: Vec<syn::Attribute>,
+    names: [syn::Ident; 2],
+    inputs: proc_macro2::TokenStream,
+}
+
+impl syn::parse::Parse for Twins {
+    fn parse(input: syn::parse::ParseStream) -> syn::Result<Self> {
+        let attrs = input.call(syn::Attribute::parse_outer)?;
+        input.parse::<syn::Token![fn]>()?;
+        let narrow = input.parse()?;
+        input.parse::<syn::Token![,]>()?;
+        let names = [narrow, input.parse()?];
+        let inside;
+        syn::parenthesized!(inside in input);
+        let inputs = inside.parse()?;
+        input.parse::<proc_macro2::TokenStream>()?;
+        Ok(Twins { attrs, names, inputs })
+    }
+}
+
+impl Twins {
+    /// What the macro makes of it.
+    fn functions(&self) -> Result<[Function; 2], String> {
+        let [mut narrow, mut wide] =
+            [(&self.names[0], "i32"), (&self.names[1], "i64")].map(|(name, index)| {
+                let inputs = self.inputs.to_string().replace("* const I", &format!("* const {index}"));
+                let sig = syn::parse_str(&format!("fn {name}({inputs}) -> i32"));
+                exported_function(&sig.map_err(|e| format!("function `{name}`: {e}"))?, &self.attrs)
+            });
+        if let (Ok(narrow), Ok(wide)) = (&mut narrow, &mut wide) {
+            wide.doc = Doc::of(format!("As {}, with 64-bit indices.", narrow.name));
+            wide.is_twin = true;
+        }
+        Ok([narrow?, wide?])
+    }
 }
 
 /// A type alias of the interface must be a function of the host that may be NULL.

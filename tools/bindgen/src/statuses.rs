@@ -86,7 +86,7 @@ fn begin(clause: &str) -> (Vec<&str>, &str) {
     (names, rest.trim_start_matches([':', ',']).trim())
 }
 
-fn upper(text: &str) -> String {
+pub fn upper(text: &str) -> String {
     let first = text.chars().next().map(|c| c.to_ascii_uppercase());
     first.into_iter().chain(text.chars().skip(1)).collect()
 }

@@ -1,6 +1,7 @@
 //! The rules of the generator, each on the smallest source that shows it.
 
 use crate::check::first_difference;
+use crate::f77;
 use crate::order::Section;
 use crate::{generate, options, package_version, run};
 
@@ -10,7 +11,9 @@ const INFO: &str = "#[repr(C)] pub struct feti_info { pub struct_size: i64, pub 
                     pub function: [c_char; 40], pub name: *const c_char }\n";
 
 fn header_and_module(source: &str) -> Result<[String; 2], String> {
-    generate(&[("ffi.rs".to_string(), source.to_string())], VERSION)
+    let mut texts =
+        generate(&[("ffi.rs".to_string(), source.to_string())], VERSION)?.into_iter().map(|(_, text)| text);
+    Ok([texts.next().unwrap(), texts.next().unwrap()])
 }
 
 fn module(source: &str) -> String {
@@ -129,12 +132,12 @@ fn a_callback_is_a_function_pointer_in_c_and_an_abstract_interface_in_fortran() 
     let ty = "Option<unsafe extern \"C\" fn(user: *mut c_void, now: *const feti_info) -> i32>";
     let [header, module] = header_and_module(&with_callback(ty)).unwrap();
     assert!(
-        header.contains("typedef int32_t (*feti_hear_fn)(void *user, const struct feti_info *now);"),
+        header.contains("typedef int32_t (*feti_hear_fn)(void *user, const feti_info *now);"),
         "{header}"
     );
     assert!(header.contains("int32_t feti_tell(feti_hear_fn callback, void *user);"), "{header}");
     for line in [
-        "function feti_hear_fn(user, now) bind(C)",
+        "integer(c_int32_t) function feti_hear_fn(user, now) bind(C)",
         "type(c_ptr), value :: user",
         "type(feti_info), intent(in) :: now",
         "type(c_funptr), value :: callback",
@@ -183,7 +186,7 @@ fn handles_are_incomplete_in_c_and_structs_complete() {
     let [header, module] =
         header_and_module(&with_argument("*mut feti_problem", "in", "scalar", "")).unwrap();
     assert!(header.contains("typedef struct feti_problem feti_problem;"), "{header}");
-    assert!(header.contains("int32_t feti_do(struct feti_problem *x);"), "{header}");
+    assert!(header.contains("int32_t feti_do(feti_problem *x);"), "{header}");
     for field in ["int32_t type;", "char function[40];", "const char *name;"] {
         assert!(header.contains(field), "{header}");
     }
@@ -216,8 +219,8 @@ fn constants_and_version_come_out_in_both_languages() {
 fn documentation_reaches_both_outputs_within_the_fortran_line() {
     let rule = "word ".repeat(60);
     let [header, module] = header_and_module(&with_argument("i32", "in", "scalar", &rule)).unwrap();
-    assert!(header.contains(" * Does it.") && header.contains(" * @param[in] x (scalar) word"), "{header}");
-    assert!(module.contains("!> Does it.") && module.contains("!> @param[in] x (scalar) word"), "{module}");
+    assert!(header.contains(" * Does it.") && header.contains(" * @param x word"), "{header}");
+    assert!(module.contains("!> Does it."), "{module}");
     assert!(module.lines().all(|line| line.len() <= 132));
 }
 
@@ -266,18 +269,96 @@ fn the_header_shows_problem_rules_example_and_contents_before_the_declarations()
     }
     for [text, call] in [[declarations, "("], [&module, "() bind(C"]] {
         let places = [
-            "Problem\n",
-            "Bodies\n",
+            "Problem ===",
+            "Bodies ===",
             "feti_body_add",
             "stiffness_i32",
             "stiffness_i64",
-            "Solve\n",
+            "Solve ===",
             "feti_solve",
         ]
         .map(|name| {
-            let wanted = if name.ends_with('\n') { name.to_string() } else { format!("{name}{call}") };
+            let wanted = if name.ends_with('=') { name.to_string() } else { format!("{name}{call}") };
             text.find(&wanted).unwrap_or_else(|| panic!("no `{wanted}` in\n{text}"))
         });
         assert!(places.is_sorted(), "{places:?} in\n{text}");
     }
+}
+
+fn subroutines(function: &str) -> String {
+    let head = "/// A problem.\n#[repr(C)] pub struct feti_problem { _private: [u8; 0] }\n";
+    f77::print(&crate::checked(&[("a.rs".to_string(), format!("{head}{function}"))], [0, 1, 0]).unwrap())
+}
+
+#[test]
+fn integers_are_converted_and_numbers_count_from_one() {
+    let text = subroutines(
+        "/// Adds.\n///\n/// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n/// | p | in | scalar | |\n\
+         /// | n | in | scalar | |\n/// | body | out | scalar | |\n\
+         #[no_mangle] pub unsafe extern \"C\" fn feti_body_add(p: *mut feti_problem, n: i64, body: *mut i64) -> i32 { 0 }",
+    );
+    for line in [
+        "!> Adds. C: feti_body_add.",
+        "recursive subroutine ftbadd(ip, n, ibody, ierr)",
+        "  integer, intent(in) :: ip, n",
+        "  ierr = told(feti_body_add(handle(ip), wide(n), body))",
+        "  if (ierr == FETI_OK) call fit(body + 1, ibody, ierr)",
+    ] {
+        assert!(text.lines().any(|found| found == line), "no `{line}` in\n{text}");
+    }
+}
+
+#[test]
+fn an_argument_that_the_host_does_not_give_moves_the_places_of_the_others() {
+    let rows: String = ["p", "body", "n", "row_ptr", "col", "val", "base", "storage", "flags"]
+        .map(|name| {
+            let shape = if ["row_ptr", "col", "val"].contains(&name) { "n" } else { "scalar" };
+            format!("    /// | {name} | in | {shape} | |\n")
+        })
+        .concat();
+    let text = subroutines(&format!(
+        "twins! {{\n    /// Gives K.\n    ///\n    /// | argument | in/out | shape | rule |\n    /// |---|---|---|---|\n{rows}\
+         fn feti_body_stiffness_i32, feti_body_stiffness_i64(p: *mut feti_problem, body: i64, n: i64, row_ptr: *const I, \
+         col: *const I, val: *const f64, base: i32, storage: i32, flags: i32) |call| {{ 0 }} }}"
+    ));
+    let call = text.replace(" &\n   ", "");
+    assert!(call.contains("1_c_int32_t, narrow(istor), FETI_COPY), [1, 2, 3, 4, 5, 6, 0, 7, 0])"), "{text}");
+}
+
+#[test]
+fn a_page_has_the_statements_that_call_its_function() {
+    let calls = f77::calls();
+    assert_eq!(calls["feti_last_error"], ["CALL FTERR(IERR, TEXT)"]);
+    assert_eq!(calls["feti_friction_law"].len(), 2);
+    assert_eq!(calls["feti_body_numbering_i64"], ["CALL FTBNUM(IP, IBODY, N, INUM, IERR)"]);
+}
+
+/// The module `rows` that holds one function of C: `feti_rows_rhs` with these arguments and rows of its table.
+fn rows_module() -> String {
+    let source = format!(
+        "{HANDLE}/// Replaces right-hand sides.\n///\n/// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n\
+         /// | p | in | scalar | the handle |\n/// | kind | in | scalar | FETI_EQUALITY |\n/// | first | in | scalar | first row, from 0 |\n\
+         /// | rows | in | scalar | number of rows |\n/// | rhs | in | rows | c or h, length |\n\
+         #[no_mangle] pub unsafe extern \"C\" fn feti_rows_rhs(p: *mut feti_problem, kind: i32, first: i64, rows: i64, \
+         rhs: *const f64) -> i32 {{ 0 }}"
+    );
+    let texts = generate(&[("rows.rs".to_string(), source)], VERSION).unwrap();
+    texts.into_iter().find(|(path, _)| path.ends_with("feti_contact_rows.f90")).unwrap().1
+}
+
+#[test]
+fn a_typed_procedure_counts_from_one_and_takes_sizes_from_arrays() {
+    let text = rows_module();
+    for line in [
+        "  public :: rows_rhs",
+        "  !> Replaces right-hand sides. kind: FETI_EQUALITY. first: first row, from 1. rhs(rows): c or h, length.",
+        "  recursive subroutine rows_rhs(p, kind, first, rhs, stat, errmsg)",
+        "    real(real64), intent(in), contiguous :: rhs(:)",
+    ] {
+        assert!(text.lines().any(|found| found == line), "no `{line}` in\n{text}");
+    }
+    let call = text.replace(" &\n      ", " ");
+    let expected =
+        "feti_rows_rhs(handle_of(p), kind, int(first - 1, c_int64_t), size(rhs, kind=c_int64_t), rhs)";
+    assert!(call.contains(expected), "{text}");
 }
