@@ -104,6 +104,7 @@ fn combined(span: &Matrix, x: &[f64]) -> Result<Vec<f64>> {
     for (q, share) in x.iter().enumerate() {
         terms.iter_mut().zip(span.col(q)).for_each(|(t, v)| *t += share.abs() * v.abs());
     }
+    // supports of 1e30 would multiply what is left of entries that cancel
     let floor = rounding::METHOD * norm_max(&motion);
     for (v, t) in motion.iter_mut().zip(&terms) {
         if v.abs() <= rounding::METHOD * t || v.abs() <= floor {

@@ -6,7 +6,7 @@ use std::fmt;
 
 use crate::error::Result;
 use crate::linalg::{Matrix, Symmetric};
-use crate::numbers::body::{LAST_DIGITS_USED, PIVOT_ROUNDING, ROWS_SUM_TO_0};
+use crate::numbers::body::{LAST_DIGITS_USED, PIVOT_ROUNDING, ROWS_SUM_TO_0, SIMPLE};
 use crate::platform::memory::{reserved, zeros};
 
 /// Number of rows in the sample, and of entries per row.
@@ -19,10 +19,8 @@ const MOST: usize = 15;
 /// The last of the 24 bits of a number in single precision may be 0: all but 1 of 32 numbers need at least this many
 /// bits.
 const BITS: u32 = 20;
-/// Entries are compared with the first `MODULI` values that are not in simple ratios; a ratio p / q is simple if p and q
-/// do not exceed these.
+/// Entries are compared with the first so many values that are not in simple ratios.
 const MODULI: usize = 8;
-const SIMPLE: [f64; 2] = [4096.0, 64.0];
 /// Bound of a row sum that is 0 up to rounding of its terms.
 const SUM: f64 = 2.0 * f64::EPSILON;
 

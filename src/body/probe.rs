@@ -89,6 +89,7 @@ pub(super) fn probe(factor: &Factor, k: &Multiple, fixing: &[usize], modes: usiz
     }
     let mut softest = size(&b) / size(&terms);
     let found = softest;
+    // singular: some |A v| is rounding of |A||v|; rounding leaves 1e-16 of a missing motion
     if softest.is_nan() || softest < UNLIKELY * (n as f64).sqrt() * rounding::SOLVE {
         (0..n).for_each(|i| b[i] = k.metric(i, 1.0) * x[i]);
         x.copy_from_slice(&b);

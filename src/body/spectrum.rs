@@ -83,6 +83,7 @@ pub enum MotionVerdict {
 pub fn cut(values: &[f64]) -> Option<(usize, f64)> {
     let m = values.len();
     let stiffest = values[m - 1];
+    // eigenvalues below this are rounding
     if stiffest <= rounding::SUM {
         return Some((m, rounding::SUM.recip()));
     }

@@ -55,6 +55,7 @@ impl Preconditioner {
         }
         let square = |i: usize| rows.row(i).map(|(_, v)| v * v).sum::<f64>() + added[i];
         let mut diagonal: Vec<f64> = (0..face.len()).map(square).collect();
+        // for rows without entries
         let shift = rounding::METHOD * diagonal.iter().fold(0.0, |largest: f64, v| largest.max(*v));
         let shift = if shift > 0.0 { shift } else { 1.0 };
         diagonal.iter_mut().for_each(|v| *v += shift);

@@ -60,3 +60,5 @@ pub const DEVIATIONS: f64 = 5.0;
 pub const TRIFLE: f64 = 1e-6;
 /// Stiffness of weak springs that make K regular, relative to the stiffest motion: 1e-6 of K at every unknown.
 pub const WEAK_SPRINGS: f64 = 1e-5;
+/// Largest p and q of a simple ratio p / q of two entries of K.
+pub const SIMPLE: [f64; 2] = [4096.0, 64.0];

@@ -36,6 +36,7 @@ impl Conjugate {
         let mut pair: Pair = [p, image].concat().into();
         for pairs in self.groups(m) {
             let shares = self.shares(&directions(pairs), &pair[m..], -1.0);
+            // conjugate up to rounding: the energy product is below this part of the energies
             let rounded = rounding::METHOD * (whole / self.curvature).sqrt();
             if m < LONG || norm_max(&shares) > rounded {
                 add_multiples(&shares, &both(pairs), &mut pair);
@@ -97,6 +98,7 @@ impl Conjugate {
         let mut w: Vec<f64> = self.pairs.iter().map(|pair| pair[i]).collect();
         let Some(&last) = w.last() else { return };
         let length = norm(&w);
+        // nothing is left: the row depends on others that are held
         if length <= rounding::SOLVE * directions(&self.pairs).into_iter().map(norm_max).fold(0.0, f64::max) {
             self.pairs.iter_mut().for_each(|pair| pair[i] = 0.0);
             return;

@@ -22,6 +22,7 @@ fn length(row: &Entries) -> f64 {
 /// The ratio of the lengths of rows; those so short that they are rounding are dropped.
 pub fn ratio(rows: &mut Vec<Entries>) -> f64 {
     let most = rows.iter().map(length).fold(0.0, f64::max);
+    // a shorter row is what the host has left of one by rounding
     rows.retain(|row| length(row) > rounding::METHOD * most);
     most / rows.iter().map(length).fold(most, f64::min)
 }

@@ -58,6 +58,7 @@ impl PivotedCholesky {
         );
         let Ok(found) = done.map(|(info, _)| info.rank) else { return Ok(None) };
         let above = |limit: f64| (0..found).find(|&j| a.get(j, j) * a.get(j, j) <= limit).unwrap_or(found);
+        // entries may be inaccurate; below the second limit a pivot is certainly rounding
         let (rank, full_rank) = (above(SINGULAR), above(rounding::SUM));
         Ok(Some(Self { order, factor: a, inverse_root, rank, full_rank }))
     }

@@ -31,6 +31,7 @@ impl Face {
     /// The face of `xi = x - rho r`.
     pub fn at(cones: &Cones, x: &[f64], r: &[f64], rho: f64) -> Self {
         let xi: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
+        // a smaller bound is zero
         let nothing = rounding::SUM * crate::linalg::vector::norm_max(x);
         let mut face = Self::empty(cones, rho);
         for node in cones.nodes() {

@@ -58,6 +58,7 @@ impl Target<'_> {
                 break;
             }
             let is_last = error <= (PROJECTED * scale).max(self.rounding(&now));
+            // the last steps remove rounding in e - G l, which weakly resisted motions would amplify
             let Some(direction) = self.direction(&now, if is_last { rounding::SOLVE } else { shift })? else {
                 break;
             };

@@ -84,6 +84,7 @@ impl<'a, 'w> Run<'a, 'w> {
             let mut v = v.to_vec();
             whole = whole.max(norm(&v));
             self.without_motions(&mut v)?;
+            // otherwise the projected direction is zero
             if norm(&v) > rounding::SUM * whole {
                 return Ok(norm(&v));
             }

@@ -55,6 +55,7 @@ pub fn minimise(
             let (cones, alike) = (Cones::half_lines(qp.bounded)?, vec![1.0; qp.e.len()]);
             let (x, direction) = interrupt::part(FIRST_POINT, || unheld(&qp, &cones, &alike))?;
             let margin = ratio(norm(&direction), norm(qp.e));
+            // a smaller residual is rounding of e
             if margin > rounding::METHOD {
                 return Ok(infeasible(x, Verdict::Infeasible { direction, margin }, &coarse));
             }
