@@ -7,6 +7,7 @@
 # make coverage  lines of c/src that the tests run                make overhead  what the C ABI costs on the smallest problem
 # make mutants   wrong changes of src and c/src, one by one, that the Rust tests have to notice (about half an hour);
 #                CHANGES="17 52" picks some, CHANGES=--places tells where they are
+# make vary      every threshold of src/numbers times 10 and a tenth of it: what changes (an hour)
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some,
 #                DECKS=sequence compares friction with sequences of problems of Tresca (5 minutes)
 # make bench     time and memory against CHOLMOD, faer, Clarabel and OSQP (some 20 minutes, 11 GB); DECKS="4k 40k" picks some
@@ -35,7 +36,7 @@ STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery rungs bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
 .PHONY: quick man deb
-.PHONY: abi licences numbers packaging stage install uninstall lint fmt clean
+.PHONY: abi licences numbers vary packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -104,6 +105,10 @@ licences:
 # The page of thresholds, from src/numbers.
 numbers:
 	NUMBERS=write $(CARGO) test --release --locked --test documents -- numbers::
+
+# What changes if a threshold is 10 times larger or smaller (an hour); NUMBERS="qp::LOST" picks some.
+vary:
+	@CARGO=$(CARGO) python3 tools/numbers/vary.py $(NUMBERS)
 
 # The library as a host finds it: installed below build/stage.
 stage:

@@ -31,7 +31,7 @@ pub const LARGEST: f64 = 1e150;
 pub const UNLIKELY: f64 = 1e3;
 /// Residual of a solution with K+ relative to its terms: more is a defect.
 pub const PROBE: f64 = 1e-8;
-/// Rounding of R relative to that of a sample of its rows.
+/// Error of R relative to what |K+ K R| shows of it.
 pub const SAMPLE: f64 = 16.0;
 /// Largest error of R that counts as rounding, relative to its fastest unknown.
 pub const MOST_ERROR: f64 = 1e-7;

@@ -1,6 +1,6 @@
 //! Cutting bodies into pieces.
 
-/// Tilt of cuts, in elements, so that layers are not cut in a zigzag.
+/// Tilt of a cut, in distances of two layers, so that it passes between the rows of a layer.
 pub const SLOPE: f64 = 0.05;
 /// Deviation of the weight of a side, relative to the smaller side.
 pub const SLACK: f64 = 0.01;

@@ -2,7 +2,7 @@
 
 /// Merit relative to the scale at which an answer may be as accurate as rounding allows.
 pub const NEAR: f64 = 1e-7;
-/// Tolerance for which the laws are given no looser start.
+/// Tolerance from which every power of ten more allows one more refusal.
 pub const FINE: f64 = 1e-12;
 /// Resistance of weighted rows, relative to |G|, below which motions are free: its square is the limit of A w^2 A'.
 pub const FREE_MOTIONS: f64 = 3e-6;
@@ -54,7 +54,7 @@ pub const SLIDE_OR_REST: f64 = 0.05;
 pub const STEADY: f64 = 1e-2;
 /// Smaller weights are those of held values, against infinite dampings.
 pub const SMALLEST_WEIGHT: f64 = 1e-100;
-/// Floor of the merit at the start, in missed balances.
+/// Merit that counts as zero, in missed balances of the start divided by rho.
 pub const MISSED_BALANCE: f64 = 4.0;
 /// First delta, relative to the diagonal of G G' (S6.2).
 pub const FIRST_DELTA: f64 = 1.0;

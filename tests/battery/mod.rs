@@ -2,6 +2,7 @@
 //! by hand, bodies that all but float, and decks of modest size: what a whole solve must find.
 
 mod bits;
+mod cost;
 mod hard;
 mod history;
 mod marginal;

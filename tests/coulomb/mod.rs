@@ -1,9 +1,9 @@
 //! Friction from loads to answers, through the whole library.
 
-mod battery;
+pub mod battery;
 mod by_hand;
 mod cut;
-mod drawn;
+pub mod drawn;
 mod driven;
 mod enumeration;
 mod equal_rows;
