@@ -24,6 +24,7 @@ pub const HELD_PIVOT: f64 = 1e200;
 /// Weight of a coarse vertex relative to the mean: a graph with much heavier vertices has no good halves.
 pub const HEAVIEST: f64 = 1.5;
 /// Weight of a side of a separator relative to half of the total.
+#[cfg_attr(feature = "metis", allow(dead_code))]
 pub const IMBALANCE: f64 = 1.2;
 /// Multiplications of a dissection per entry of the graph of nodes: 25 times those of minimum degree.
 pub const DISSECTION: f64 = 500.0;

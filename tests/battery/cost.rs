@@ -29,6 +29,7 @@ fn what_many_answers_cost() {
         ("known", known.collect()),
         ("friction", rubbing.collect()),
     ];
+    println!();
     for (name, problems) in all {
         let costs: Vec<_> = problems
             .into_iter()

@@ -12,6 +12,8 @@ use crate::layering::source::{is_word, line_of, test_ranges, without_text, words
 const PLAIN: [f64; 9] = [0.0, 0.5, 1.0, 2.0, 3.0, 4.0, 10.0, 12.0, 100.0];
 
 const PAGE: &str = "docs/numbers.md";
+/// What `make vary` has measured: a line `GROUP::NAME VALUE: TEXT` for ten times and for a tenth of each.
+const VARIED: &str = "tools/numbers/varied.txt";
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -116,11 +118,26 @@ fn users(group: &str, name: &str, sources: &[(String, String)]) -> Vec<String> {
     users.map(|(path, _)| path.trim_start_matches("src/").trim_end_matches(".rs").to_owned()).collect()
 }
 
+/// What changes with ten times a threshold, and with a tenth.
+fn changes(group: &str, name: &str, varied: &str) -> String {
+    let of = format!("{group}::{name} ");
+    let lines = varied.lines().filter_map(|line| line.strip_prefix(&of));
+    let told: Vec<&str> = lines.filter_map(|line| line.split_once(": ").map(|told| told.1)).collect();
+    match told[..] {
+        [] => "not varied".to_owned(),
+        [more, less] if more == less => more.to_owned(),
+        _ => told.join(" / "),
+    }
+}
+
 fn page(library: &[(String, String)]) -> String {
+    let varied = fs::read_to_string(root().join(VARIED)).unwrap();
     let mut page = String::from(
         "# Numbers\n\nEvery threshold of the library that is not a small multiple of eps = 2^-52, from the files of `src/numbers`; \
          `make numbers` writes this\npage, and a test refuses any other. Every number is a ratio, a power of a ratio or a count: none \
-         has a unit. P, J and S refer to [method.md](method.md).\n",
+         has a unit. P, J and S refer to [method.md](method.md).\n\n\
+         The last column says what changes with ten times the number and with a tenth of it, as `make vary` measured on 150 problems of each \
+         battery (hard,\nvaried, known outcome, friction): problems that are solved, products with F, and tests of the batteries that fail.\n",
     );
     for (path, text) in sources("src/numbers") {
         let entries = entries(&text);
@@ -132,7 +149,7 @@ fn page(library: &[(String, String)]) -> String {
         let group = path.trim_start_matches("src/numbers/").trim_end_matches(".rs");
         writeln!(
             page,
-            "\n## `{group}`\n\n{}\n\n| number | value | meaning | used in |\n|---|---|---|---|",
+            "\n## `{group}`\n\n{}\n\n| number | value | meaning | used in | ten times / a tenth |\n|---|---|---|---|---|",
             title.join(" ")
         )
         .unwrap();
@@ -143,7 +160,9 @@ fn page(library: &[(String, String)]) -> String {
                 .collect::<Vec<_>>()
                 .join(", ");
             let value = value.trim_end_matches(".0");
-            writeln!(page, "| `{name}` | {value} | {} | {used} |", meaning.replace('|', "\\|")).unwrap();
+            let changes = changes(group, &name, &varied);
+            writeln!(page, "| `{name}` | {value} | {} | {used} | {changes} |", meaning.replace('|', "\\|"))
+                .unwrap();
         }
     }
     page

@@ -2,8 +2,9 @@
 """vary.py [GROUP::NAME ...]   every threshold of src/numbers, or those named, times 10 and a tenth of it: `make vary`
 
 A copy of the working tree is built once, in which a threshold is a function that reads the variable NUMBER; then the
-batteries run with each value (BATTERY problems each, 300). A line for each value that changes how many problems end solved,
-their products, or whether the tests of the batteries pass, goes to standard output and to build/vary/table.txt."""
+batteries run with each value (BATTERY problems each, 150). A line for each value that changes how many problems end solved,
+their products, or whether the tests of the batteries pass, goes to standard output and to varied.txt beside this file, from which
+`make numbers` has the last columns of docs/numbers.md."""
 
 import os
 import re
@@ -102,7 +103,7 @@ def build():
 
 def measured(program, number):
     """Costs of each battery, and which tests fail."""
-    environment = {"BATTERY": "300", "RUST_TEST_THREADS": "1", "RAYON_NUM_THREADS": "1", **os.environ, "NUMBER": number}
+    environment = {"BATTERY": "150", "RUST_TEST_THREADS": "1", "RAYON_NUM_THREADS": "1", **os.environ, "NUMBER": number}
     def run(*arguments):
         command = [program, *arguments, "--nocapture"]
         try:
@@ -110,7 +111,7 @@ def measured(program, number):
         except subprocess.TimeoutExpired:
             return "test takes_too_long ... FAILED\n"
     costs = re.findall(r"^(\w+): \d+ problems, (\d+) solved, (\d+) products", run("what_many_answers_cost", "--ignored"), re.M)
-    failed = sorted(set(re.findall(r"^    (\S+::\w+)$", run(*TESTS), re.M)))
+    failed = sorted(set(re.findall(r"^    \S+::(\w+)$", run(*TESTS), re.M)))
     return {name: (int(solved), int(products)) for name, solved, products in costs}, failed
 
 
@@ -122,8 +123,10 @@ def told(before, now):
         own = costs.get(name)
         if own is None:
             parts.append(f"{name} does not end")
-        elif own != (solved, products):
-            parts.append(f"{name} solved {own[0] - solved:+}, products {100 * (own[1] / products - 1):+.1f} %")
+            continue
+        more, change = own[0] - solved, f"{100 * (own[1] / products - 1):+.1f} %"
+        words = [f"{more:+} solved"] * (more != 0) + [f"products {change}"] * (own[1] != products)
+        parts += [f"{name} {', '.join(words)}"] * bool(words)
     return "; ".join(parts + [f"fails {test}" for test in failed if test not in before[1]]) or "nothing"
 
 
@@ -141,7 +144,8 @@ def main(arguments):
         for (name, value), now in zip(tried, results):
             lines.append(f"{name} {value}: {told(before, now)}")
             print(lines[-1], flush=True)
-    (WORK / "table.txt").write_text("\n".join(lines) + "\n")
+    if not arguments:
+        Path(__file__).with_name("varied.txt").write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":
