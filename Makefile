@@ -108,7 +108,7 @@ numbers:
 
 # What changes if a threshold is 10 times larger or smaller (an hour); NUMBERS="qp::LOST" picks some.
 vary:
-	@CARGO=$(CARGO) python3 tools/numbers/vary.py $(NUMBERS)
+	@CARGO=$(CARGO) python3 tools/mutants/vary.py $(NUMBERS)
 
 # The library as a host finds it: installed below build/stage.
 stage:

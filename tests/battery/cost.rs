@@ -1,4 +1,4 @@
-//! How many answers end and what they cost, in one line for each battery: `tools/numbers/vary.py` compares them.
+//! How many answers end and what they cost, in one line for each battery: `tools/mutants/vary.py` compares them.
 
 use decks::{battery, hard, varied};
 use feti_contact::solver::{Outcome, Problem};

@@ -195,7 +195,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// All sources of a crate by their path, and those that exist in tests only.
-fn crate_in(folder: &str) -> (Vec<(String, String)>, BTreeSet<String>) {
+pub fn crate_in(folder: &str) -> (Vec<(String, String)>, BTreeSet<String>) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (mut all, mut only_tests) = (Vec::new(), BTreeSet::new());
     for file in sources(&root.join(folder)) {

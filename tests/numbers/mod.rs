@@ -3,37 +3,31 @@
 use std::env;
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use crate::layering::crate_in;
 use crate::layering::source::{is_word, line_of, test_ranges, without_text, words};
 
 /// What an expression may have without a name: zeros, ones, halves and counts of a formula; the variance of rounding is 1 / 12,
 /// a per cent 1 / 100, digits have the base 10.
 const PLAIN: [f64; 9] = [0.0, 0.5, 1.0, 2.0, 3.0, 4.0, 10.0, 12.0, 100.0];
 
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const PAGE: &str = "docs/numbers.md";
 /// What `make vary` has measured: a line `GROUP::NAME VALUE: TEXT` for ten times and for a tenth of each.
-const VARIED: &str = "tools/numbers/varied.txt";
+const VARIED: &str = "tools/mutants/varied.txt";
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// The sources of a folder of the library, without tests: (path from the root, text).
-fn sources(folder: &str) -> Vec<(String, String)> {
-    let mut found = Vec::new();
-    let mut paths: Vec<PathBuf> =
-        fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    for path in paths {
-        let name = path.strip_prefix(root()).unwrap().to_str().unwrap().to_owned();
-        if path.is_dir() && !name.ends_with("tests") {
-            found.extend(sources(&name));
-        } else if name.ends_with(".rs") && !name.ends_with("tests.rs") {
-            found.push((name, fs::read_to_string(path).unwrap()));
+/// The sources of the library outside its tests, without comments and texts, and the files of src/numbers as they are, by group.
+fn sources() -> (Vec<(String, String)>, Vec<(String, String)>) {
+    let (all, tests) = crate_in("src");
+    let (mut library, mut numbers) = (Vec::new(), Vec::new());
+    for (path, text) in all.into_iter().filter(|(path, _)| !tests.contains(path)) {
+        match path.strip_prefix("src/numbers/").and_then(|name| name.strip_suffix(".rs")) {
+            Some(group) => numbers.push((group.to_owned(), text)),
+            None => library.push((path, without_text(&text))),
         }
     }
-    found
+    (library, numbers)
 }
 
 /// Real literals of the code with their positions: `1e-8`, `0.5`, `2.0`; not `0..3`, `x.0`, `1_u64`.
@@ -65,19 +59,18 @@ fn literals(code: &str) -> Vec<(usize, f64)> {
 }
 
 /// Literals that are thresholds without a name.
-fn unnamed(text: &str) -> Vec<(usize, f64)> {
-    let code = without_text(text);
-    let tests = test_ranges(&code);
+fn unnamed(code: &str) -> Vec<(usize, f64)> {
+    let tests = test_ranges(code);
     let of_eps = |at: usize| {
         code[at..].chars().take(24).collect::<String>().contains("EPSILON")
             || code[..at].ends_with("EPSILON / ")
     };
-    literals(&code)
+    literals(code)
         .into_iter()
         .filter(|(at, value)| {
             !PLAIN.contains(value) && !of_eps(*at) && !tests.iter().any(|test| test.contains(at))
         })
-        .map(|(at, value)| (line_of(&code, at), value))
+        .map(|(at, value)| (line_of(code, at), value))
         .collect()
 }
 
@@ -105,16 +98,16 @@ fn entries(text: &str) -> Vec<Entry> {
 }
 
 /// The files that use an entry, without `src/` and `.rs`.
-fn users(group: &str, name: &str, sources: &[(String, String)]) -> Vec<String> {
-    let named = |text: &str| {
-        let code = without_text(text);
-        let imported = code.split(';').any(|statement| {
-            let of_group = statement.trim_start().starts_with(&format!("use crate::numbers::{group}"));
-            of_group && words(statement, name).next().is_some()
-        });
-        imported || words(&code, group).any(|at| code[at..].starts_with(&format!("{group}::{name}")))
+fn users(group: &str, name: &str, library: &[(String, String)]) -> Vec<String> {
+    let of_group = format!("use crate::numbers::{group}");
+    let qualified = format!("{group}::{name}");
+    let named = |code: &str| {
+        let mut statements =
+            code.split(';').filter(|statement| statement.trim_start().starts_with(&of_group));
+        statements.any(|statement| words(statement, name).next().is_some())
+            || words(code, group).any(|at| code[at..].starts_with(&qualified))
     };
-    let users = sources.iter().filter(|(_, text)| named(text));
+    let users = library.iter().filter(|(_, code)| named(code));
     users.map(|(path, _)| path.trim_start_matches("src/").trim_end_matches(".rs").to_owned()).collect()
 }
 
@@ -130,8 +123,9 @@ fn changes(group: &str, name: &str, varied: &str) -> String {
     }
 }
 
-fn page(library: &[(String, String)]) -> String {
-    let varied = fs::read_to_string(root().join(VARIED)).unwrap();
+fn page() -> String {
+    let (library, numbers) = sources();
+    let varied = fs::read_to_string(Path::new(ROOT).join(VARIED)).unwrap();
     let mut page = String::from(
         "# Numbers\n\nEvery threshold of the library that is not a small multiple of eps = 2^-52, from the files of `src/numbers`; \
          `make numbers` writes this\npage, and a test refuses any other. Every number is a ratio, a power of a ratio or a count: none \
@@ -139,14 +133,13 @@ fn page(library: &[(String, String)]) -> String {
          The last column says what changes with ten times the number and with a tenth of it, as `make vary` measured on 150 problems of each \
          battery (hard,\nvaried, known outcome, friction): problems that are solved, products with F, and tests of the batteries that fail.\n",
     );
-    for (path, text) in sources("src/numbers") {
+    for (group, text) in numbers {
         let entries = entries(&text);
         if entries.is_empty() {
             continue;
         }
         let title = text.lines().take_while(|line| line.starts_with("//!"));
         let title: Vec<&str> = title.map(|line| line.trim_start_matches("//! ")).collect();
-        let group = path.trim_start_matches("src/numbers/").trim_end_matches(".rs");
         writeln!(
             page,
             "\n## `{group}`\n\n{}\n\n| number | value | meaning | used in | ten times / a tenth |\n|---|---|---|---|---|",
@@ -154,13 +147,13 @@ fn page(library: &[(String, String)]) -> String {
         )
         .unwrap();
         for Entry { name, value, meaning } in entries {
-            let used = users(group, &name, library)
+            let used = users(&group, &name, &library)
                 .iter()
                 .map(|path| format!("`{path}`"))
                 .collect::<Vec<_>>()
                 .join(", ");
             let value = value.trim_end_matches(".0");
-            let changes = changes(group, &name, &varied);
+            let changes = changes(&group, &name, &varied);
             writeln!(page, "| `{name}` | {value} | {} | {used} | {changes} |", meaning.replace('|', "\\|"))
                 .unwrap();
         }
@@ -168,30 +161,25 @@ fn page(library: &[(String, String)]) -> String {
     page
 }
 
-fn library() -> Vec<(String, String)> {
-    sources("src").into_iter().filter(|(path, _)| !path.starts_with("src/numbers/")).collect()
-}
-
 #[test]
 fn every_threshold_has_a_name_and_a_reason_in_one_place() {
+    let (library, numbers) = sources();
     let mut faults = Vec::new();
     // defaults and ranges of the options are in docs/options.md
-    for (path, text) in library().iter().filter(|(path, _)| path != "src/model/settings.rs") {
+    for (path, code) in library.iter().filter(|(path, _)| path != "src/model/settings.rs") {
         faults.extend(
-            unnamed(text)
+            unnamed(code)
                 .iter()
                 .map(|(line, value)| format!("{path}:{line}: {value:e} has no name in src/numbers")),
         );
     }
-    let library = library();
-    for (path, text) in sources("src/numbers") {
-        let group = path.trim_start_matches("src/numbers/").trim_end_matches(".rs");
+    for (group, text) in numbers {
         for entry in entries(&text) {
             if entry.meaning.split(' ').count() < 3 {
-                faults.push(format!("{path}: {} has no meaning", entry.name));
+                faults.push(format!("{group}::{} has no meaning", entry.name));
             }
-            if users(group, &entry.name, &library).is_empty() {
-                faults.push(format!("{path}: nothing uses {}", entry.name));
+            if users(&group, &entry.name, &library).is_empty() {
+                faults.push(format!("nothing uses {group}::{}", entry.name));
             }
         }
     }
@@ -200,8 +188,8 @@ fn every_threshold_has_a_name_and_a_reason_in_one_place() {
 
 #[test]
 fn the_page_of_numbers_is_that_of_the_sources() {
-    let page = page(&library());
-    let path = root().join(PAGE);
+    let page = page();
+    let path = Path::new(ROOT).join(PAGE);
     if env::var("NUMBERS").is_ok_and(|way| way == "write") {
         fs::write(&path, &page).unwrap();
     }
@@ -213,8 +201,12 @@ fn the_page_of_numbers_is_that_of_the_sources() {
 
 #[test]
 fn a_threshold_in_an_expression_is_seen() {
-    let seen =
-        |line: &str| unnamed(&format!("fn f() {{ {line} }}")).iter().map(|found| found.1).collect::<Vec<_>>();
+    let seen = |line: &str| {
+        unnamed(&without_text(&format!("fn f() {{ {line} }}")))
+            .iter()
+            .map(|found| found.1)
+            .collect::<Vec<_>>()
+    };
     assert_eq!(seen("x < 1e-8 * y || x > 0.3 || x < 2.5e+3"), [1e-8, 0.3, 2.5e3]);
     assert_eq!(seen("let x = 7_000f64;"), [7000.0]);
     assert_eq!(

@@ -139,17 +139,13 @@ def switched(text, places, of):
     return text
 
 
-def copy_tree(changes):
-    """The files of the working tree that git knows or does not ignore, with the switches; what has not changed is left."""
-    texts, at = edits(changes)
-    library = ROOT / "src"
-    of = {path: "crate" if library in path.parents else "feti_contact" for path in texts}
-    new = {path: switched(text, at.get(path, []), of[path]) for path, text in texts.items()}
-    new[ROOT / "src/lib.rs"] += SWITCH
+def write_tree(new, tree):
+    """The files of the working tree that git knows or does not ignore, below `tree`, with the texts `new` by path in place of
+    theirs; what has not changed is left."""
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True)
     kept = set()
     for name in listed.stdout.decode().splitlines():
-        source, target = ROOT / name, WORK / "tree" / name
+        source, target = ROOT / name, tree / name
         if not source.is_file():
             continue
         content = new[source].encode() if source in new else source.read_bytes()
@@ -158,9 +154,19 @@ def copy_tree(changes):
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(content)
             shutil.copymode(source, target)
-    for target in (WORK / "tree").rglob("*"):
+    for target in tree.rglob("*"):
         if target.is_file() and target not in kept:
             target.unlink()
+
+
+def copy_tree(changes):
+    """The working tree with the switches."""
+    texts, at = edits(changes)
+    library = ROOT / "src"
+    of = {path: "crate" if library in path.parents else "feti_contact" for path in texts}
+    new = {path: switched(text, at.get(path, []), of[path]) for path, text in texts.items()}
+    new[ROOT / "src/lib.rs"] += SWITCH
+    write_tree(new, WORK / "tree")
 
 
 def build():

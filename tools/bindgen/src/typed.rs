@@ -28,11 +28,7 @@ const PARTS: [(&str, &str); 6] = [
 pub fn print(api: &Api) -> Vec<(String, String)> {
     let generated = modules().into_iter().filter(|(_, about, _)| !about.is_empty());
     let texts = generated.map(|(name, about, entries)| {
-        let known = entries
-            .into_iter()
-            .filter(|entry| api.functions.iter().any(|f| f.name == entry.function))
-            .collect();
-        (format!("include/fortran/feti_contact_{name}.f90"), module(api, name, about, known))
+        (format!("include/fortran/feti_contact_{name}.f90"), module(api, name, about, known(api, entries)))
     });
     let whole = ("include/fortran/feti_contact.f90".to_string(), whole(api));
     texts.chain([whole]).collect()
@@ -70,6 +66,12 @@ fn whole(api: &Api) -> String {
     out + "  implicit none\n  public\nend module\n"
 }
 
+/// What of a module is written by hand.
+fn part(module: &str) -> &'static str {
+    PARTS.iter().find(|(name, _)| *name == module).map_or("", |(_, text)| *text)
+}
+
+/// Those whose function of C exists.
 fn known(api: &Api, entries: Vec<Entry>) -> Vec<Entry> {
     entries.into_iter().filter(|entry| api.functions.iter().any(|f| f.name == entry.function)).collect()
 }
@@ -95,7 +97,7 @@ fn module(api: &Api, name: &str, about: &str, entries: Vec<Entry>) -> String {
     for line in wrap("  public :: ", "  public :: ", &public.join(", "), LINE_WIDTH) {
         let _ = writeln!(out, "{}", line.trim_end_matches(','));
     }
-    let part = PARTS.iter().find(|(module, _)| *module == name).map_or("", |(_, text)| *text);
+    let part = part(name);
     let (specification, procedures) = part.split_once("contains\n").unwrap_or(("", part));
     out.push_str(specification);
     for generic in &generics {
@@ -119,7 +121,7 @@ fn module(api: &Api, name: &str, about: &str, entries: Vec<Entry>) -> String {
 
 fn write_interface(out: &mut String, api: &Api, generic: &str, entries: &[&Entry]) {
     out.push('\n');
-    let parts = PARTS.iter().find(|(module, _)| *module == entries[0].module).map_or("", |(_, text)| *text);
+    let part = part(entries[0].module);
     let described = entries[0].described;
     write_doc(
         out,
@@ -129,7 +131,7 @@ fn write_interface(out: &mut String, api: &Api, generic: &str, entries: &[&Entry
     out.push_str("  !>\n");
     for entry in entries {
         let dummies = match entry.by_hand {
-            true => statement(parts, entry.name).map(|line| between(&line).to_string()).unwrap_or_default(),
+            true => statement(part, entry.name).map(|line| between(&line).to_string()).unwrap_or_default(),
             false => procedure::dummies(entry).join(", ") + ", stat, errmsg",
         };
         let call = format!(

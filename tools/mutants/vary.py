@@ -8,13 +8,14 @@ their products, or whether the tests of the batteries pass, goes to standard out
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+sys.dont_write_bytecode = True
+from run import ROOT, write_tree
+
 WORK = ROOT / "build/vary"
 ENTRY = re.compile(r"^pub const ([A-Z0-9_]+): f64 = (.+);$", re.M)
 # Limits of options are constants of a table.
@@ -69,25 +70,19 @@ def called(text, named):
 
 def copy_tree(all_entries):
     number = {name: k for k, name in enumerate(all_entries)}
-    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True)
-    for name in listed.stdout.decode().splitlines():
-        source, target = ROOT / name, WORK / "tree" / name
-        if not source.is_file():
-            continue
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if name.startswith("src/numbers/"):
-            def switch(m):
-                entry = f"{source.stem}::{m[1]}"
-                if entry not in number:
-                    return m[0]
-                return (f"#[allow(dead_code)]\npub const {m[1]}_: f64 = {m[2]};\n"
-                        f"#[allow(non_snake_case)]\npub fn {m[1]}() -> f64 {{\n    super::varied({number[entry]}, {m[2]})\n}}")
-            text = ENTRY.sub(switch, source.read_text())
-            target.write_text(text + SWITCH if source.stem == "mod" else text)
-        elif name.startswith("src/") and name.endswith(".rs"):
-            target.write_text(called(source.read_text(), number))
-        else:
-            shutil.copy2(source, target)
+    new = {}
+    for path in sorted((ROOT / "src").rglob("*.rs")):
+        def switch(m):
+            entry = f"{path.stem}::{m[1]}"
+            if entry not in number:
+                return m[0]
+            return (f"#[allow(dead_code)]\npub const {m[1]}_: f64 = {m[2]};\n"
+                    f"#[allow(non_snake_case)]\npub fn {m[1]}() -> f64 {{\n    super::varied({number[entry]}, {m[2]})\n}}")
+        text = path.read_text()
+        is_numbers = path.parent.name == "numbers"
+        new[path] = ENTRY.sub(switch, text) if is_numbers else called(text, number)
+    new[ROOT / "src/numbers/mod.rs"] += SWITCH
+    write_tree(new, WORK / "tree")
     return number
 
 
