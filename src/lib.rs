@@ -52,33 +52,43 @@
 //!
 //! The C interface, the crate feti-contact-c, wraps [`solver::Problem`]. For C, Fortran and FORTRAN 77 see README.md.
 //!
+//! The public face is [`error`] and [`solver`]. Other modules that are `pub`, without documentation, are so for the crates, tests
+//! and benches of this repository; nothing of them is promised.
+//!
 //! | module | contents |
 //! |---|---|
 //! | [`error`] | the one error type |
-//! | [`linalg`] | vectors, matrices, ordering, sparse Cholesky |
-//! | [`body`] | one body: K_p, R_p, fixing dofs, K_p+ |
-//! | [`constraints`] | B u <= c, H u = h: rows, their compliance and scaling |
-//! | [`dual`] | F, d, G, e, and the recovery of u |
-//! | [`qp`] | Sections 4 and 5: knows no bodies |
-//! | [`certificate`] | accuracy of an answer, computed from matrices and rows alone |
+//! | `linalg` | vectors, matrices, ordering, sparse Cholesky |
+//! | `body` | one body: K_p, R_p, fixing dofs, K_p+ |
+//! | `constraints` | B u <= c, H u = h: rows, their compliance and scaling |
+//! | `dual` | F, d, G, e, and the recovery of u |
+//! | `qp` | Sections 4 and 5: knows no bodies |
+//! | `certificate` | accuracy of an answer, computed from matrices and rows alone |
 //! | `progress` | progress reports, log, cancelling, time limit |
 //! | `model` | data given by the host; nothing is computed |
 //! | `setup` | data computed once from the model, for any load and gap |
 //! | `solve` | presolve, methods, recovery, diagnosis: the answer |
 //! | [`solver`] | the problem of a host, which owns one of each |
 
+#[doc(hidden)]
 pub mod body;
+#[doc(hidden)]
 pub mod certificate;
+#[doc(hidden)]
 pub mod constraints;
 mod decomposition;
+#[doc(hidden)]
 pub mod dual;
 pub mod error;
+#[doc(hidden)]
 pub mod linalg;
 mod mesh;
 mod model;
 mod numbers;
+#[doc(hidden)]
 pub mod platform;
 mod progress;
+#[doc(hidden)]
 pub mod qp;
 mod setup;
 mod solve;

@@ -29,7 +29,7 @@ pub unsafe extern "C" fn feti_start_from(
 ) -> i32 {
     enter(p, call!(feti_start_from(p, kind, rows, lambda)), |problem| {
         let kind = multiplier_kind(kind)?;
-        let expected = problem.rows(kind).len();
+        let expected = problem.sizes().of(kind);
         let rows = same(rows, expected, "rows", "the number of rows of this kind is")?;
         // SAFETY: one number per row guaranteed by the caller.
         problem.start_from(kind, unsafe { input(lambda, rows, "lambda") }?)

@@ -117,7 +117,7 @@ pub struct BodyData<'a> {
     pub soft: bool,
     /// Force / length, also the metric of dofs without stiffness.
     pub unit: f64,
-    /// Unknowns of the body held so stiffly that neighbours are negligible, ascending: see [`grounded`].
+    /// Unknowns of the body held so stiffly that neighbours are negligible, ascending: see `grounded`.
     pub grounded: &'a [u32],
 }
 

@@ -3,10 +3,10 @@
 use crate::error::{Error, Kind, Proof};
 use crate::linalg::graph::components;
 use crate::mesh::Mesh;
-use crate::model::{contradiction, kind_and_row, Model, Parts};
+use crate::model::{contradiction, kind_and_row, HostModel, Parts};
 
 /// Converts an error about pieces to one about bodies of the host.
-pub fn of_host(host: &Model, parts: &Parts, mut error: Error) -> Error {
+pub fn of_host(host: &HostModel, parts: &Parts, mut error: Error) -> Error {
     if let Some(part) = error.place.body.filter(|part| *part < parts.parts.len()) {
         let body = parts.parts[part].body;
         error.place.body = Some(body);

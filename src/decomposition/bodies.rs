@@ -7,7 +7,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, Shared};
 use crate::linalg::Symmetric;
 use crate::mesh::{Mesh, Piece};
-use crate::model::{GivenBody, Joint, Model, Part, Parts};
+use crate::model::{GivenBody, HostModel, Joint, Part, Parts, SolvedModel};
 use crate::platform::memory::{filled, reserved, zeros};
 
 use super::components::{slight, Component, Components, Connected};
@@ -17,7 +17,7 @@ const WHAT: &str = "the parts of bodies";
 
 /// The parts of all bodies, without loads, and their relation to the bodies.
 pub fn parts(
-    host: &Model,
+    host: &HostModel,
     connected: &Connected,
     held: &dyn Fn(usize) -> bool,
 ) -> Result<(Vec<GivenBody>, Parts)> {
@@ -64,7 +64,7 @@ struct MadePart {
 }
 
 /// The unknowns, among all unknowns of the host, that rows, joints or loads touch.
-pub fn touched(host: &Model, joints: &[Joint]) -> Result<Vec<bool>> {
+pub fn touched(host: &HostModel, joints: &[Joint]) -> Result<Vec<bool>> {
     let mut touched = filled(host.sizes().dofs, false, WHAT)?;
     for rows in [&host.contact, &host.equalities, &host.friction.rows] {
         (0..rows.len()).flat_map(|i| rows.matrix.row(i)).for_each(|(j, _)| touched[j] = true);
@@ -209,7 +209,12 @@ impl Split<'_> {
 
 /// Distributes the loads of the host to the parts: each copy gets its weight, the last copy the rest. `copies`: of the bodies that
 /// are cut.
-pub fn loads(host: &Model, parts: &Parts, copies: &[Option<Copies>], model: &mut Model) -> Result<()> {
+pub fn loads(
+    host: &HostModel,
+    parts: &Parts,
+    copies: &[Option<Copies>],
+    model: &mut SolvedModel,
+) -> Result<()> {
     for (body, given) in host.bodies.iter().enumerate() {
         let Some(load) = &given.body.load else {
             parts.of(body).for_each(|part| model.bodies[part].body.load = None);

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::NOISE;
 use crate::linalg::Symmetric;
-use crate::model::Model;
+use crate::model::HostModel;
 use crate::platform::memory::{filled, headroom, reserved};
 use crate::platform::threads;
 
@@ -146,7 +146,7 @@ struct Found {
 
 impl Connected {
     /// Finds the components of the matrices that have changed.
-    pub fn follow(&mut self, host: &Model) -> Result<()> {
+    pub fn follow(&mut self, host: &HostModel) -> Result<()> {
         self.bodies.resize_with(host.bodies.len(), Found::default);
         let changed = |&p: &usize| self.bodies[p].of != Some(host.bodies[p].revisions.stiffness);
         let changed: Vec<usize> = (0..self.bodies.len()).filter(changed).collect();

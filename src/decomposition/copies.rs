@@ -1,7 +1,7 @@
 //! The copies of a body's unknowns in its parts.
 
 use crate::error::Result;
-use crate::model::{Model, Parts};
+use crate::model::{HostModel, Parts};
 use crate::numbers::rows::SLACK;
 use crate::platform::memory::filled;
 
@@ -16,7 +16,7 @@ pub struct Copies {
 
 impl Copies {
     /// None for a body that is its only part.
-    pub fn of(host: &Model, parts: &Parts, body: usize) -> Result<Option<Self>> {
+    pub fn of(host: &HostModel, parts: &Parts, body: usize) -> Result<Option<Self>> {
         if parts.only(body).is_some() {
             return Ok(None);
         }

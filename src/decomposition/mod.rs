@@ -12,7 +12,7 @@ mod rows;
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::model::{GivenBody, Model, Revisions};
+use crate::model::{GivenBody, HostModel, Revisions, SolvedModel};
 
 pub use back::of_host;
 use bodies::{loads, parts, touched};
@@ -23,7 +23,7 @@ use rows::rows;
 /// The problem of a host with parts in place of its bodies.
 pub struct Decomposition {
     /// The model that is solved. Its revisions are those of the host's model.
-    pub model: Model,
+    pub model: SolvedModel,
     /// For bodies that are cut.
     copies: Vec<Option<Copies>>,
     of: Revisions,
@@ -31,13 +31,13 @@ pub struct Decomposition {
 
 impl Decomposition {
     /// Some body has several parts, or unknowns of several bodies are glued; otherwise the host's model itself is solved.
-    pub fn is_due(host: &Model, connected: &Connected) -> bool {
+    pub fn is_due(host: &HostModel, connected: &Connected) -> bool {
         let is_cut = |given: &GivenBody| given.body.assembled.is_some();
         host.shares_numbers() || !connected.all_connected() || host.bodies.iter().any(is_cut)
     }
 
     /// None if it is not due.
-    pub fn of(host: &Model, connected: &Connected) -> Result<Option<Self>> {
+    pub fn of(host: &HostModel, connected: &Connected) -> Result<Option<Self>> {
         if !Self::is_due(host, connected) {
             return Ok(None);
         }
@@ -49,7 +49,7 @@ impl Decomposition {
         let copies =
             (0..host.bodies.len()).map(|body| Copies::of(host, &all, body).map_err(|e| e.body(body)));
         let mut copies = copies.collect::<Result<Vec<_>>>()?;
-        let mut model = Model::new();
+        let mut model = SolvedModel::new();
         model.offsets.clone_from(&all.starts);
         model.bodies = bodies;
         (model.contact, model.equalities, model.friction) = rows(host, &joints, &all, &copies)?;
@@ -62,13 +62,13 @@ impl Decomposition {
     }
 
     /// Whether bodies and rows are still those of the host, and no load acts on an unknown that is in no part.
-    pub fn is_of(&self, host: &Model) -> bool {
+    pub fn is_of(&self, host: &HostModel) -> bool {
         let loose = self.model.parts.iter().flat_map(|parts| &parts.loose);
         self.of == host.revisions && loose.into_iter().all(|&j| host.load(j) == 0.0)
     }
 
     /// Takes over data that may change without a new setup: options, loads, right-hand sides, laws of friction.
-    pub fn refresh(&mut self, host: &Model) -> Result<()> {
+    pub fn refresh(&mut self, host: &HostModel) -> Result<()> {
         let Some(parts) = self.model.parts.clone() else { return Ok(()) };
         self.model.settings = host.settings.clone();
         self.model.contact.rhs.copy_from_slice(&host.contact.rhs);

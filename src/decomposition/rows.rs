@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::constraints::{Friction, RowSet};
 use crate::error::Result;
 use crate::linalg::Csr;
-use crate::model::{Joint, Model, Parts};
+use crate::model::{HostModel, Joint, Parts};
 
 use super::copies::Copies;
 
@@ -14,7 +14,7 @@ const WHAT: &str = "the rows of pieces";
 /// Contact rows of the host; its equality rows, followed by the glue of joints and the glue of pieces; its nodes with
 /// friction.
 pub fn rows(
-    host: &Model,
+    host: &HostModel,
     joints: &[Joint],
     parts: &Parts,
     copies: &[Option<Copies>],

@@ -8,7 +8,7 @@ use crate::certificate::led;
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::vector::{norm_max, NOISE};
-use crate::model::contents::Model;
+use crate::model::contents::SolvedModel;
 use crate::model::row_sets::empty_row_contradicts;
 use crate::numbers::data::{BINARY, MARGINAL, MOST_BY_COORDINATES};
 use crate::platform::memory::filled;
@@ -31,7 +31,7 @@ pub struct Accuracy {
 
 /// The lengths of which right-hand sides are differences.
 pub struct Lengths<'a> {
-    model: &'a Model,
+    model: &'a SolvedModel,
     /// Of every body, its largest distance between coordinates and its motion `sum_j |f_j| / D^_j` by its load; 0 without
     /// both. A load below 64 eps of the largest is none.
     of_bodies: Vec<f64>,
@@ -42,7 +42,7 @@ pub struct Lengths<'a> {
     ties: Vec<u32>,
 }
 
-impl Model {
+impl SolvedModel {
     pub fn lengths(&self) -> Result<Lengths<'_>> {
         let held = self.held()?;
         let loads = self.bodies.iter().filter_map(|given| given.body.load.as_ref());
@@ -133,7 +133,7 @@ impl Accuracy {
 }
 
 impl Lengths<'_> {
-    pub fn model(&self) -> &Model {
+    pub fn model(&self) -> &SolvedModel {
         self.model
     }
 

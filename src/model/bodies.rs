@@ -7,7 +7,8 @@ use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
 use crate::mesh::Mesh;
-use crate::model::contents::{Change, GivenBody, Model};
+use crate::model::contents::{Change, GivenBody};
+use crate::model::host::HostModel;
 use crate::platform::memory::copied;
 
 impl Change {
@@ -21,8 +22,7 @@ impl Change {
     }
 }
 
-impl Model {
-    /// Adds a body with `n` unknowns and returns its number.
+impl HostModel {
     pub fn add_body(&mut self, n: usize) -> Result<usize> {
         if n == 0 {
             return Err(Error::argument("n", "a body has at least one unknown").value(0.0).limit(1.0));
@@ -40,7 +40,6 @@ impl Model {
         Ok(self.bodies.len() - 1)
     }
 
-    /// R, n x r column-major with leading dimension `ldr`; r = 0 with exact vectors means that K is not singular.
     pub fn set_null_space(
         &mut self,
         body: usize,
@@ -75,8 +74,6 @@ impl Model {
         Ok(())
     }
 
-    /// The dofs held in K+ of (15); none: the library chooses them. They change neither forces nor displacements, only
-    /// the course of the methods in paper units.
     pub fn set_fixing(&mut self, body: usize, dofs: Option<&[usize]>) -> Result<()> {
         let order = self.order(body)?;
         let beyond = dofs.into_iter().flatten().enumerate().find(|(_, dof)| **dof >= order);
@@ -91,7 +88,6 @@ impl Model {
         Ok(())
     }
 
-    /// Node, direction and position of every dof; `xyz[k + ld i]` is coordinate k < dim of dof i.
     pub fn set_coordinates(
         &mut self,
         body: usize,
@@ -115,14 +111,12 @@ impl Model {
         Ok(())
     }
 
-    /// What the rigid motions of the coordinates, given before or later, are; without this call candidates.
     pub fn set_coordinate_modes(&mut self, body: usize, modes: Modes) -> Result<()> {
         let unchanged = self.given(body)?.body.coordinate_modes == modes;
         self.change(body, Change::unless(unchanged, Change::Motions))?.body.coordinate_modes = modes;
         Ok(())
     }
 
-    /// `f_p`, length n, force.
     pub fn set_load(&mut self, body: usize, f: &[f64]) -> Result<()> {
         self.check_length(body, "n", f.len())?;
         if let Some(dof) = first_non_finite(f) {
@@ -132,7 +126,6 @@ impl Model {
         Ok(())
     }
 
-    /// `diagonal` is `K_ii`, n numbers >= 0, force / length; a matrix or functions given before are replaced.
     pub fn set_operator(&mut self, body: usize, diagonal: &[f64], functions: HostFunctions) -> Result<()> {
         self.check_length(body, "n", diagonal.len())?;
         if let Some(dof) = diagonal.iter().position(|d| !(d.is_finite() && *d >= 0.0)) {

@@ -1,7 +1,6 @@
-//! All input of the host: bodies, rows, options. Nothing is computed here; results stored elsewhere keep the revisions of
-//! the data from which they were computed.
+//! Bodies, rows and options as setup and solve read them. Nothing is computed here; results stored elsewhere keep the
+//! revisions of the data from which they were computed.
 
-use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -13,22 +12,19 @@ use crate::model::parts::Parts;
 use crate::model::settings::Settings;
 use crate::platform::threads;
 
-/// Bodies, rows and options of one contact problem. Every call checks its input first and stores all of it or nothing; what
-/// is stored changes by these calls alone, so that the revisions tell what is out of date.
-pub struct Model {
-    pub(crate) settings: Settings,
-    pub(crate) bodies: Vec<GivenBody>,
+/// Bodies, rows and options of the problem that is solved: that of the host, or that of the parts of its bodies.
+pub struct SolvedModel {
+    pub settings: Settings,
+    pub bodies: Vec<GivenBody>,
     /// First unknown of every body among all unknowns, and their end, at most i64::MAX.
-    pub(crate) offsets: Vec<usize>,
-    pub(crate) contact: RowSet,
-    pub(crate) equalities: RowSet,
+    pub offsets: Vec<usize>,
+    pub contact: RowSet,
+    pub equalities: RowSet,
     /// Nodes of contact rows with friction, and their tangential rows.
-    pub(crate) friction: Friction,
-    /// Body and dof of every unknown number of the host.
-    pub(crate) unknowns: HashMap<usize, (usize, usize)>,
-    pub(crate) revisions: Revisions,
+    pub friction: Friction,
+    pub revisions: Revisions,
     /// If the bodies are pieces: the bodies of the host to which they belong.
-    pub(crate) parts: Option<Arc<Parts>>,
+    pub parts: Option<Arc<Parts>>,
 }
 
 /// Increased by every call that sets the named data, even if the data do not change.
@@ -95,7 +91,18 @@ pub struct Sizes {
     pub dim: usize,
 }
 
-impl Model {
+impl Sizes {
+    /// Number of rows of one kind.
+    pub fn of(&self, kind: RowKind) -> usize {
+        match kind {
+            RowKind::Inequality => self.rows,
+            RowKind::Equality => self.equalities,
+            RowKind::Tangential => self.tangential,
+        }
+    }
+}
+
+impl SolvedModel {
     pub fn new() -> Self {
         Self {
             settings: Settings::new(),
@@ -104,47 +111,9 @@ impl Model {
             contact: RowSet::default(),
             equalities: RowSet::default(),
             friction: Friction::default(),
-            unknowns: HashMap::new(),
             revisions: Revisions::default(),
             parts: None,
         }
-    }
-
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    pub fn set_f64(&mut self, name: &str, value: f64) -> Result<()> {
-        self.settings.set_f64(name, value)
-    }
-
-    pub fn set_i64(&mut self, name: &str, value: i64) -> Result<()> {
-        let before = self.settings.glue;
-        self.settings.set_i64(name, value)?;
-        self.check_glue("value").inspect_err(|_| self.settings.glue = before)
-    }
-
-    pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
-        self.settings.set_str(name, value)
-    }
-
-    /// Sets options by a text such as `tolerance=1e-8 threads=4`: all of them or none.
-    pub fn set_text(&mut self, text: &str) -> Result<()> {
-        let before = self.settings.clone();
-        self.settings.set_text(text)?;
-        self.check_glue("text").inspect_err(|_| self.settings = before)
-    }
-
-    pub fn get_f64(&self, name: &str) -> Result<f64> {
-        self.settings.get_f64(name)
-    }
-
-    pub fn get_i64(&self, name: &str) -> Result<i64> {
-        self.settings.get_i64(name)
-    }
-
-    pub fn get_str(&self, name: &str) -> Result<String> {
-        self.settings.get_str(name)
     }
 
     pub fn sizes(&self) -> Sizes {
@@ -172,7 +141,7 @@ impl Model {
         }
     }
 
-    pub(crate) fn rows_mut(&mut self, kind: RowKind) -> &mut RowSet {
+    pub fn rows_mut(&mut self, kind: RowKind) -> &mut RowSet {
         match kind {
             RowKind::Inequality => &mut self.contact,
             RowKind::Equality => &mut self.equalities,
@@ -185,7 +154,7 @@ impl Model {
     }
 
     /// The body, to be given new data.
-    pub(crate) fn change(&mut self, body: usize, change: Change) -> Result<&mut GivenBody> {
+    pub fn change(&mut self, body: usize, change: Change) -> Result<&mut GivenBody> {
         let bodies = self.bodies.len();
         let given = self.bodies.get_mut(body).ok_or_else(|| no_body(body, bodies))?;
         self.revisions.bodies += 1;
@@ -239,12 +208,6 @@ impl Model {
     pub fn on_caller(&self, bodies: &[usize]) -> Vec<bool> {
         let on_caller = |p: &usize| self.bodies[*p].body.k().is_some_and(|k| k.on_caller());
         bodies.iter().map(on_caller).collect()
-    }
-}
-
-impl Default for Model {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::error::{Error, Kind, Result};
-use crate::model::contents::Model;
+use crate::model::host::HostModel;
 use crate::platform::memory::{refusal, reserved};
 
 const WHAT: &str = "unknowns with one number";
@@ -17,7 +17,7 @@ pub struct Joint {
     pub ends: [usize; 2],
 }
 
-impl Model {
+impl HostModel {
     /// For every number one joint fewer than unknowns that have it: each joins the unknown to that of the previous body.
     pub fn joints(&self) -> Result<Vec<Joint>> {
         let numbered = self.bodies.iter().filter_map(|given| given.numbers.as_deref());
@@ -41,7 +41,6 @@ impl Model {
         Ok(joints)
     }
 
-    /// Values over all unknowns; the values of unknowns with the same number are summed at the first of them.
     pub fn summed(&self, mut values: Vec<f64>) -> Result<Vec<f64>> {
         for Joint { ends: [before, place], .. } in self.joints()?.into_iter().rev() {
             values[before] += values[place];

@@ -10,10 +10,10 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::same_bits;
 use crate::linalg::{Borrowed, Symmetric};
 use crate::model::bodies::check_ld;
-use crate::model::contents::{Change, Model};
+use crate::model::contents::Change;
+use crate::model::host::HostModel;
 
-impl Model {
-    /// `K_p` by rows, n x n.
+impl HostModel {
     pub fn set_stiffness(&mut self, body: usize, k: SparseInput<'_>) -> Result<()> {
         self.check_length(body, "n", k.ptr.len() - 1)?;
         let stiffness = from_sparse(k, self.settings.symmetry_tolerance).map_err(|e| e.body(body))?;
@@ -21,7 +21,6 @@ impl Model {
         self.keep_stiffness(body, stiffness, form)
     }
 
-    /// `K_p` by rows without its diagonal `diag`, length n.
     pub fn set_stiffness_split(&mut self, body: usize, diag: &[f64], k: SparseInput<'_>) -> Result<()> {
         self.check_length(body, "n", k.ptr.len() - 1)?;
         self.check_length(body, "n", diag.len())?;
@@ -31,7 +30,6 @@ impl Model {
         self.keep_stiffness(body, stiffness, form)
     }
 
-    /// `K_p` column-major with leading dimension `ld`, n x n.
     pub fn set_stiffness_dense(
         &mut self,
         body: usize,
@@ -47,8 +45,6 @@ impl Model {
         self.keep_stiffness(body, stiffness, Form::Dense(storage))
     }
 
-    /// `K_p` by the rows of its lower triangle; the values remain in the array of the host. Returns false without any
-    /// change if the rows do not have the form in which the matrix is stored.
     pub fn borrow_stiffness(
         &mut self,
         body: usize,
@@ -81,17 +77,14 @@ impl Model {
         Ok(())
     }
 
-    /// Number of values of a matrix by rows, without those of a separate diagonal (`split`).
     pub fn values(&self, body: usize, split: bool) -> Result<usize> {
         self.places(body, split).map(Places::entries)
     }
 
-    /// New values for the pattern given last, in the host's order; the analysis is kept.
     pub fn set_values(&mut self, body: usize, val: &[f64]) -> Result<()> {
         self.give_values(body, None, val)
     }
 
-    /// As `set_values`, for a matrix without its diagonal `diag`, length n.
     pub fn set_values_split(&mut self, body: usize, diag: &[f64], val: &[f64]) -> Result<()> {
         self.give_values(body, Some(diag), val)
     }
@@ -106,14 +99,11 @@ impl Model {
         places.values(self.stiffness(body)?, diag, val, self.settings.symmetry_tolerance)
     }
 
-    /// A new matrix in the storage of the previous one. If entries change between zero and nonzero, the pattern changes,
-    /// and the analysis with it.
     pub fn set_values_dense(&mut self, body: usize, n: usize, k: &[f64], ld: usize) -> Result<()> {
         let storage = self.dense_storage(body)?;
         self.set_stiffness_dense(body, n, k, ld, storage)
     }
 
-    /// The storage of a dense matrix.
     pub fn dense_storage(&self, body: usize) -> Result<Storage> {
         match self.form(body)? {
             Form::Dense(storage) => Ok(*storage),
@@ -130,14 +120,10 @@ impl Model {
         self.change(body, Change::unless(unchanged, Change::Values)).map(drop)
     }
 
-    /// Whether the values of the matrix remain in an array of the host.
     pub fn is_borrowed(&self, body: usize) -> bool {
         self.stiffness(body).is_ok_and(|k| k.val.is_of_host())
     }
 
-    /// New values for a matrix with borrowed values, in this array from now on. They count as changed, also for other
-    /// bodies that borrow the array. If they are refused and the array is the previous one, there is no matrix until
-    /// values are given again.
     pub fn borrow_values(&mut self, body: usize, val: Borrowed<f64>) -> Result<()> {
         self.places(body, false)?.check_number(val.len()).map_err(|e| e.body(body))?;
         let stiffness = self.bodies[body].body.stiffness.as_mut();

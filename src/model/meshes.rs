@@ -6,15 +6,13 @@ use crate::body::{Assembled, Form};
 use crate::error::{Error, Kind, Result};
 use crate::mesh::{cut, pieces_for, Connectivity, ElementMatrix, ElementStorage, Elements, Mesh, Piece};
 use crate::model::bodies::check_ld;
-use crate::model::contents::{Change, GivenBody, Model};
+use crate::model::contents::{Change, GivenBody};
+use crate::model::host::HostModel;
 use crate::platform::memory::{filled, reserved};
 
 const WHAT: &str = "the elements of a body";
 
-impl Model {
-    /// The elements of a body: element e joins `dof[ptr[e]..ptr[e + 1]]`, from 0; -1 - k is the held unknown k, whose row
-    /// and column are left out. A matrix or functions given before are replaced. If the elements are unchanged they are
-    /// kept, and a new pass begins.
+impl HostModel {
     pub fn set_mesh(&mut self, body: usize, ptr: &[usize], dof: &[i64]) -> Result<()> {
         let order = self.order(body)?;
         if ptr.len() < 2 {
@@ -41,14 +39,12 @@ impl Model {
         Ok(())
     }
 
-    /// The matrix of element e, n x n column-major with leading dimension `ld`.
     pub fn add_element(&mut self, body: usize, e: usize, n: usize, ke: &[f64], ld: usize) -> Result<()> {
         check_ld("ld", ld, n).map_err(|error| error.body(body).element(e))?;
         let matrix = ElementMatrix { values: ke, n, ld, storage: ElementStorage::Full };
         self.add(body, e, std::iter::once(matrix))
     }
 
-    /// The matrices of `count` elements from `first` on, one after the other.
     pub fn add_elements(
         &mut self,
         body: usize,
@@ -75,7 +71,6 @@ impl Model {
         self.add(body, first, matrices)
     }
 
-    /// Number of values of the matrices of `count` elements.
     pub fn values_of_elements(
         &self,
         body: usize,
@@ -87,13 +82,11 @@ impl Model {
         Ok(sizes.iter().map(|n| storage.len(*n)).sum())
     }
 
-    /// Number of unknowns of an element, including held unknowns.
     pub fn size_of_element(&self, body: usize, e: usize) -> Result<usize> {
         self.check_element(body, e, "e")?;
         Ok(self.mesh(body)?.connectivity().size(e))
     }
 
-    /// Checks that the body has an element with this number, the first of a block.
     pub fn check_first_element(&self, body: usize, first: usize) -> Result<()> {
         self.check_element(body, first, "first")
     }

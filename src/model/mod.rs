@@ -4,6 +4,7 @@ mod accuracy;
 mod bodies;
 mod contents;
 pub mod file;
+mod host;
 mod joints;
 mod matrices;
 mod meshes;
@@ -16,7 +17,8 @@ mod settings_text;
 mod words;
 
 pub use accuracy::{Accuracy, Lengths};
-pub use contents::{BodyRevisions, GivenBody, Model, Revisions, Sizes};
+pub use contents::{BodyRevisions, GivenBody, Revisions, Sizes, SolvedModel};
+pub use host::HostModel;
 pub use joints::Joint;
 pub use parts::{Part, Parts};
 pub use row_sets::{contradiction, kind_and_row, proof_of_rows, PER_ENTRY};

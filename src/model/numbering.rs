@@ -3,13 +3,13 @@
 
 use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
-use crate::model::contents::Model;
+use crate::model::host::HostModel;
 use crate::platform::memory::{refusal, reserved};
 
 /// The smallest number that is too large for an index of an array.
 const TOO_LARGE: usize = isize::MAX as usize / size_of::<f64>();
 
-impl Model {
+impl HostModel {
     /// The numbers of a body, distinct over all bodies; if glue is allowed, distinct within each body.
     fn checked_numbers(&self, body: usize, numbers: &[i64]) -> Result<Vec<usize>> {
         let refused = |dof: usize, what: &str| {
@@ -39,27 +39,26 @@ impl Model {
         again.min().map_or(Ok(checked), |dof| refused(dof, "another unknown of the body has this number"))
     }
 
-    /// Sets the host's numbers of the unknowns of a body, from 0, distinct within the body, and over all bodies without
-    /// glue. A second call replaces them.
     pub fn set_numbering(&mut self, body: usize, numbers: &[i64]) -> Result<()> {
         self.check_length(body, "n", numbers.len())?;
         let numbers = self.checked_numbers(body, numbers)?;
         if self.bodies[body].numbers.as_deref() == Some(&numbers) {
             return Ok(());
         }
-        let (was_shared, unknowns) = (self.shares_numbers(), &mut self.unknowns);
+        let was_shared = self.shares_numbers();
+        let (unknowns, bodies) = (&mut self.unknowns, &mut self.contents.bodies);
         let bytes = numbers.len() * size_of::<(usize, (usize, usize))>();
         unknowns.try_reserve(numbers.len()).map_err(|_| refusal(bytes, "the numbers of the unknowns"))?;
-        for old in self.bodies[body].numbers.iter().flatten() {
+        for old in bodies[body].numbers.iter().flatten() {
             if unknowns.get(old).is_some_and(|(first, _)| *first == body) {
                 unknowns.remove(old);
             }
         }
-        self.bodies[body].numbers = Some(numbers.into());
+        bodies[body].numbers = Some(numbers.into());
         // a number that the body no longer uses may belong to other bodies
-        let claiming = if was_shared { 0..self.bodies.len() } else { body..body + 1 };
+        let claiming = if was_shared { 0..bodies.len() } else { body..body + 1 };
         for p in claiming {
-            for (dof, &number) in self.bodies[p].numbers.iter().flatten().enumerate() {
+            for (dof, &number) in bodies[p].numbers.iter().flatten().enumerate() {
                 let first = unknowns.entry(number).or_insert((p, dof));
                 *first = (*first).min((p, dof));
             }
@@ -93,8 +92,6 @@ impl Model {
         }
     }
 
-    /// Checks the length of an array over all unknowns: at least the largest number + 1; without numbers, the sum over
-    /// all bodies.
     pub fn check_whole(&self, n: usize) -> Result<()> {
         let numbered = self.is_numbered()?;
         let largest = self.bodies.iter().filter_map(|given| given.numbers.as_deref()?.iter().max());
@@ -125,8 +122,6 @@ impl Model {
         Ok(())
     }
 
-    /// Passes the values of all bodies, one after the other, with their positions in an array over all unknowns; if
-    /// several unknowns share a number, only the first.
     pub fn spread(&self, values: &[f64], mut to: impl FnMut(usize, f64)) -> Result<()> {
         let mut values = values.iter();
         self.each_unknown(|_, _, place| {
@@ -134,8 +129,6 @@ impl Model {
         })
     }
 
-    /// Sets the loads of all bodies, force; entries of `f` without unknown are ignored. If several unknowns share a
-    /// number, the first gets the load.
     pub fn set_all_loads(&mut self, f: &[f64]) -> Result<()> {
         self.check_whole(f.len())?;
         let mut loads = reserved(self.bodies.len(), "the loads")?;

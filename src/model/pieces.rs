@@ -6,7 +6,8 @@ use crate::body::Form;
 use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::Symmetric;
 use crate::mesh::{Connectivity, Mesh, Piece};
-use crate::model::contents::{Change, Model};
+use crate::model::contents::Change;
+use crate::model::host::HostModel;
 use crate::platform::memory::{filled, reserved};
 
 const WHAT: &str = "the pieces of a body";
@@ -25,7 +26,7 @@ pub struct PiecesInput {
     pub val: Vec<f64>,
 }
 
-impl Model {
+impl HostModel {
     /// Sets the pieces of a body, which must cover all its unknowns.
     pub fn set_pieces(&mut self, body: usize, given: &PiecesInput) -> Result<()> {
         let order = self.order(body)?;

@@ -2,15 +2,14 @@
 
 use crate::constraints::{Friction, FrictionInput, RowKind, RowSet, RowsInput};
 use crate::error::{Error, Proof, Result};
-use crate::model::contents::Model;
+use crate::model::contents::SolvedModel;
+use crate::model::host::HostModel;
 use crate::platform::memory::{self, Headroom};
 
 /// Bytes per entry of B and H: the host's rows, the scaled rows and the rows by bodies, with room for growth.
 pub const PER_ENTRY: usize = 128;
 
-impl Model {
-    /// Adds rows and returns the number of the first among those of its kind. Without `body`, their unknowns are the
-    /// host's numbers if there are any.
+impl HostModel {
     pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
         let places = match rows.body {
             Some(_) => None,
@@ -25,7 +24,6 @@ impl Model {
         Ok(first)
     }
 
-    /// New right-hand sides c or h, length; a contact row whose gap is +infinity never closes.
     pub fn set_rhs(&mut self, kind: RowKind, first: usize, rhs: &[f64]) -> Result<()> {
         if self.rows_mut(kind).set_rhs(kind, first, rhs)? {
             self.revisions.laws += 1;
@@ -33,15 +31,12 @@ impl Model {
         Ok(())
     }
 
-    /// Makes rows from `first` on compliant, `B u - c <= lambda/k`, `H u - h = mu/k`: 1/k >= 0, length / force, 0 for
-    /// rigid rows. The multipliers of the last solve remain valid as a start.
     pub fn set_compliance(&mut self, kind: RowKind, first: usize, inv_k: &[f64]) -> Result<()> {
         self.rows_mut(kind).set_compliance(first, inv_k)?;
         self.revisions.laws += 1;
         Ok(())
     }
 
-    /// Drops all rows of one kind; with contact rows also all nodes with friction.
     pub fn clear_rows(&mut self, kind: RowKind) {
         *self.rows_mut(kind) = RowSet::default();
         if kind != RowKind::Equality {
@@ -50,20 +45,18 @@ impl Model {
         self.revisions.rows += 1;
     }
 
-    /// Adds nodes with friction and returns the number of the first. Without `body`, the unknowns of their tangential
-    /// rows are the host's numbers if there are any.
     pub fn add_friction(&mut self, input: FrictionInput) -> Result<usize> {
         let places = match input.rows.body {
             Some(_) => None,
             None => self.places_of(input.rows.ptr, input.rows.dof)?,
         };
         let rows = RowsInput { dof: places.as_deref().unwrap_or(input.rows.dof), ..input.rows };
-        let first = self.friction.add(FrictionInput { rows, ..input }, &self.contact, &self.offsets)?;
+        let SolvedModel { friction, contact, offsets, .. } = &mut self.contents;
+        let first = friction.add(FrictionInput { rows, ..input }, contact, offsets)?;
         self.revisions.rows += 1;
         Ok(first)
     }
 
-    /// Sets coefficients (no unit), bounds (force) or both of `count` nodes; absent values do not change.
     pub fn set_friction_law(
         &mut self,
         first: usize,
@@ -71,20 +64,19 @@ impl Model {
         coefficient: Option<&[f64]>,
         bound: Option<&[f64]>,
     ) -> Result<()> {
-        if self.friction.set_law(first, count, coefficient, bound, &self.contact)? {
+        let SolvedModel { friction, contact, .. } = &mut self.contents;
+        if friction.set_law(first, count, coefficient, bound, contact)? {
             self.revisions.laws += 1;
         }
         Ok(())
     }
 
-    /// Elastic stick, `s = T u - s_old - C_t lambda_t`: C_t >= 0, length / force, one per node; 0 for rigid nodes.
     pub fn set_friction_compliance(&mut self, first: usize, inv_kt: &[f64]) -> Result<()> {
         self.friction.set_compliance(first, inv_kt)?;
         self.revisions.laws += 1;
         Ok(())
     }
 
-    /// Sets s_old of `count` nodes, (dim, nodes), length: the slip at the start of the step.
     pub fn set_friction_reference(
         &mut self,
         first: usize,
@@ -98,19 +90,16 @@ impl Model {
         Ok(())
     }
 
-    /// Checks that `count` nodes exist and have `dim` tangential rows each.
     pub fn check_friction_nodes(&self, first: usize, count: usize, dim: usize) -> Result<()> {
         self.friction.check_nodes(first, count)?;
         self.friction.check_dim(dim, count)
     }
 
-    /// Drops all nodes with friction; their contact rows remain.
     pub fn clear_friction(&mut self) {
         self.friction = Friction::default();
         self.revisions.rows += 1;
     }
 
-    /// Reserves memory for further rows: existing rows may be copied while their arrays grow.
     pub fn headroom_for_rows(&self, rows: usize, entries: usize) -> Result<Headroom> {
         let present = RowKind::ALL.iter().map(|kind| self.rows(*kind).matrix.col.len()).max().unwrap_or(0);
         let bytes = present.saturating_add(entries).saturating_mul(PER_ENTRY);

@@ -10,7 +10,7 @@ use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::Shared;
-use crate::model::{Lengths, Method, Model, Preconditioning, Settings};
+use crate::model::{Lengths, Method, Preconditioning, Settings, SolvedModel};
 use crate::numbers::setup::{ASSEMBLED, ASSEMBLED_LUMPED};
 use crate::platform::memory::reserved;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
@@ -24,17 +24,16 @@ use crate::setup::whole::Whole;
 
 impl Prepared {
     /// True if factors and dual operators are up to date and as the options require.
-    pub fn is_up_to_date(&self, model: &Model) -> bool {
+    pub fn is_up_to_date(&self, model: &SolvedModel) -> bool {
         let suits = |ready: &Ready| ready.rows.coupled == coupled(&model.settings);
         self.duals(model)
             .is_some_and(|duals| duals.islands.iter().all(suits) && duals.operators.suit(&model.settings))
     }
 
     /// Makes null spaces, factors and dual operators that are missing or out of date.
-    pub fn set_up(&mut self, model: &Model, watch: &mut Watch) -> Result<()> {
+    pub fn set_up(&mut self, model: &SolvedModel, watch: &mut Watch) -> Result<()> {
         let begun = Instant::now();
         self.follow(model);
-        model.check_complete()?;
         let lengths = model.lengths()?;
         lengths.check_empty_rows()?;
         if self.is_up_to_date(model) {
@@ -79,7 +78,7 @@ impl Prepared {
     }
 
     /// Logs how many unknowns are carried.
-    fn tell_pilots(&self, model: &Model, log: &Log) -> Result<()> {
+    fn tell_pilots(&self, model: &SolvedModel, log: &Log) -> Result<()> {
         let carries = |p: &usize| self.bodies[*p].pilots.is_some();
         let Some(first) = (0..self.bodies.len()).find(carries) else { return Ok(()) };
         let all: usize =
@@ -109,7 +108,7 @@ impl Prepared {
     /// Forms F and G of every island.
     fn dualize(
         &mut self,
-        model: &Model,
+        model: &SolvedModel,
         islands: Vec<(Box<Island>, Arc<DualRows>, Vec<f64>)>,
         operators: Operators,
         watch: &mut Watch,
@@ -174,12 +173,12 @@ fn coupled(settings: &Settings) -> bool {
 
 /// The unit of forces of an island, 2^p, relative to that of K of a body, a power of two. Above 2^1000 the stiffness of the
 /// body is nothing: its unknowns are carried, and K+ is 0.
-fn ratio_of_units(model: &Model, island: &Island, body: usize) -> f64 {
+fn ratio_of_units(model: &SolvedModel, island: &Island, body: usize) -> f64 {
     (island.unit / model.bodies[body].body.without(island.unit)).min(2f64.powi(1000))
 }
 
 /// `D~ / 2^p` over the unknowns of an island; for dofs without stiffness D is that of the stiffest dof of their body.
-fn metric(model: &Model, island: &Island) -> Result<Metric> {
+fn metric(model: &SolvedModel, island: &Island) -> Result<Metric> {
     let of_body = |(&p, range): (&usize, &Range<usize>)| {
         let body = &model.bodies[p].body;
         Some((range.start, body.k()?, body.without(island.unit)))

@@ -14,7 +14,7 @@ use crate::certificate::grounded;
 use crate::dual::{DistinctRows, Size};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Multiple, Symmetric};
-use crate::model::Model;
+use crate::model::SolvedModel;
 use crate::numbers::setup::{ANALYSED, FACTORISED, WORK};
 use crate::platform::slabs::Slabs;
 use crate::platform::threads;
@@ -33,7 +33,7 @@ impl Prepared {
     /// to these numbers and to the memory.
     pub(super) fn factorize(
         &mut self,
-        model: &Model,
+        model: &SolvedModel,
         rows: &[DistinctRows],
         watch: &mut Watch,
     ) -> Result<Operators> {
@@ -82,7 +82,7 @@ impl Prepared {
     /// Factorises the bodies without a known factor, then shares the factors with equal bodies.
     fn execute(
         &mut self,
-        model: &Model,
+        model: &SolvedModel,
         (pending, plans, factors): Planned,
         rounded: &[bool],
         watch: &mut Watch,
@@ -137,7 +137,7 @@ impl Prepared {
 
     /// For every plan the body with the factor, present or planned, of an equal matrix with equal dofs held; none if the
     /// plan must factorise itself.
-    fn factors_for(&self, model: &Model, pending: &[usize], plans: &[Plan]) -> Vec<Option<usize>> {
+    fn factors_for(&self, model: &SolvedModel, pending: &[usize], plans: &[Plan]) -> Vec<Option<usize>> {
         let mut known: HashMap<_, Vec<usize>> = HashMap::new();
         for (q, own) in self.bodies.iter().enumerate().filter(|(_, own)| own.inverse.is_some()) {
             known.entry((own.keys, own.symbolic.as_ref().map(Arc::as_ptr))).or_default().push(q);
@@ -155,7 +155,7 @@ impl Prepared {
 
     /// For every body the body whose K+ it uses: the first equal body that already has K+, otherwise the first equal
     /// body.
-    fn representatives(&mut self, model: &Model) -> Result<Vec<usize>> {
+    fn representatives(&mut self, model: &SolvedModel) -> Result<Vec<usize>> {
         self.find_keys(model)?;
         let same = |p: usize, q: usize| {
             self.bodies[p].pilots == self.bodies[q].pilots
@@ -173,7 +173,7 @@ impl Prepared {
     }
 
     /// Computes the keys of the matrices; a single body needs none.
-    fn find_keys(&mut self, model: &Model) -> Result<()> {
+    fn find_keys(&mut self, model: &SolvedModel) -> Result<()> {
         if self.bodies.len() < 2 {
             return Ok(());
         }
@@ -190,7 +190,7 @@ impl Prepared {
     /// one.
     fn analyse(
         &mut self,
-        model: &Model,
+        model: &SolvedModel,
         pending: &[usize],
         plans: &mut [Plan],
         watch: &mut Watch,
@@ -237,7 +237,7 @@ impl Prepared {
         offers
     }
 
-    fn same_pattern(&self, model: &Model, p: usize, q: usize) -> bool {
+    fn same_pattern(&self, model: &SolvedModel, p: usize, q: usize) -> bool {
         let [a, b] = [p, q].map(|p| model.bodies[p].body.stiffness.as_ref());
         let keys = [p, q].map(|p| self.bodies[p].keys.map(|keys| keys[0]));
         p == q || keys[0] == keys[1] && a.zip(b).is_some_and(|(a, b)| same_pattern(a, b))
@@ -257,7 +257,7 @@ impl Prepared {
     /// into memory. Operators kept from previous rows are dropped if that helps. `more`: bytes of factors not made yet.
     fn operators(
         &mut self,
-        model: &Model,
+        model: &SolvedModel,
         rows: &[DistinctRows],
         entries: &[usize],
         more: usize,
@@ -284,7 +284,7 @@ impl Prepared {
     }
 
     /// Logs what rounding of the entries leaves uncertain about the null spaces of these bodies.
-    fn tell_doubts(&self, model: &Model, bodies: &[usize], log: &Log) -> Result<()> {
+    fn tell_doubts(&self, model: &SolvedModel, bodies: &[usize], log: &Log) -> Result<()> {
         for &p in bodies {
             let number = model.name(p) as i64 + model.settings.index_base;
             let Some(kplus) = self.bodies[p].inverse.as_ref().map(|of| &of.kplus) else { continue };
@@ -315,7 +315,7 @@ impl Prepared {
     }
 }
 
-fn same_stiffness(model: &Model, p: usize, q: usize) -> bool {
+fn same_stiffness(model: &SolvedModel, p: usize, q: usize) -> bool {
     let [a, b] = [p, q].map(|p| model.bodies[p].body.stiffness.as_ref());
     a.zip(b).is_some_and(|(a, b)| same_matrix(a, b))
 }

@@ -2,7 +2,7 @@
 //! operators are not included: each is reserved when its size is known.
 
 use crate::error::Result;
-use crate::model::{Model, PER_ENTRY};
+use crate::model::{SolvedModel, PER_ENTRY};
 use crate::platform::memory::{self, Headroom, PRODUCTS, SMALL_MATRICES};
 use crate::setup::prepared::Prepared;
 
@@ -19,7 +19,7 @@ const PER_MODE: usize = 320;
 
 impl Prepared {
     /// Room for setup, solve and check while the result is kept.
-    pub fn working_headroom(&self, model: &Model) -> Result<Headroom> {
+    pub fn working_headroom(&self, model: &SolvedModel) -> Result<Headroom> {
         let rows = model.contact.len() + model.equalities.len();
         // a body without stiffness will be refused, so its size does not matter
         let dofs: usize = model.bodies.iter().filter_map(|given| given.body.k()).map(|k| k.order()).sum();
@@ -34,7 +34,7 @@ impl Prepared {
     }
 
     /// As `working_headroom`, for a call that only needs the setup: none if the setup exists.
-    pub fn setup_headroom(&self, model: &Model) -> Result<Option<Headroom>> {
+    pub fn setup_headroom(&self, model: &SolvedModel) -> Result<Option<Headroom>> {
         if self.is_up_to_date(model) {
             return Ok(None);
         }
@@ -42,7 +42,7 @@ impl Prepared {
     }
 
     /// Dimension of the null space of a body; six if it is not known yet.
-    fn modes(&self, model: &Model, body: usize) -> usize {
+    fn modes(&self, model: &SolvedModel, body: usize) -> usize {
         let found = self.inverse(model, body).map(|inverse| inverse.kplus.null_space.cols);
         let given = model.bodies[body].body.null_space.as_ref().map(|given| given.vectors.cols);
         found.or(given).unwrap_or(6)

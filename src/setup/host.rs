@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::body::{Body, GeneralizedInverse, HostMultiple, Modes, NullSpaceInput, TOGETHER};
 use crate::error::{Error, Kind, Result};
-use crate::model::Model;
+use crate::model::SolvedModel;
 use crate::numbers::setup::TRIED;
 use crate::progress::{Phase, SetupPart, Watch};
 use crate::setup::plans::of_coordinates;
@@ -13,7 +13,7 @@ use crate::setup::prepared::{Inverse, Prepared};
 
 impl Prepared {
     /// Makes K+ of the host's bodies that have none, and checks their functions.
-    pub(super) fn try_hosts(&mut self, model: &Model, watch: &mut Watch) -> Result<()> {
+    pub(super) fn try_hosts(&mut self, model: &SolvedModel, watch: &mut Watch) -> Result<()> {
         let pending =
             |&p: &usize| self.bodies[p].inverse.is_none() && model.bodies[p].body.operator.is_some();
         let pending: Vec<usize> = (0..self.bodies.len()).filter(pending).collect();

@@ -11,7 +11,7 @@ use crate::linalg::graph::joined;
 use crate::linalg::hash::{hash, same_bits, Shared, START};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
-use crate::model::{Lengths, Model};
+use crate::model::{Lengths, SolvedModel};
 use crate::platform::memory::{copied, filled, headroom, reserved, zeros};
 
 const WHAT: &str = "groups of bodies";
@@ -107,7 +107,7 @@ impl Island {
     }
 
     /// The loads of its bodies one after the other, force.
-    pub fn loads(&self, model: &Model) -> Result<Vec<f64>> {
+    pub fn loads(&self, model: &SolvedModel) -> Result<Vec<f64>> {
         let mut all = zeros(self.unknowns(), "the loads")?;
         for (&p, range) in self.bodies.iter().zip(&*self.ranges) {
             if let Some(load) = &model.bodies[p].body.load {
@@ -118,14 +118,14 @@ impl Island {
     }
 
     /// Copies the values of the island from values over all unknowns.
-    pub fn gather(&self, model: &Model, all: &[f64]) -> Result<Vec<f64>> {
+    pub fn gather(&self, model: &SolvedModel, all: &[f64]) -> Result<Vec<f64>> {
         let mut own = reserved(self.unknowns(), WHAT)?;
         self.bodies.iter().for_each(|&p| own.extend_from_slice(&all[model.range(p)]));
         Ok(own)
     }
 
     /// Copies values over the unknowns of the island to values over all unknowns.
-    pub fn scatter(&self, model: &Model, own: &[f64], all: &mut [f64]) {
+    pub fn scatter(&self, model: &SolvedModel, own: &[f64], all: &mut [f64]) {
         for (&p, range) in self.bodies.iter().zip(&*self.ranges) {
             all[model.range(p)].copy_from_slice(&own[range.clone()]);
         }
@@ -178,7 +178,7 @@ impl Island {
 }
 
 /// Coefficient and bound of a node; a contact row without entries has a constant force, which is added to the bound.
-fn law(model: &Model, number: usize) -> (f64, f64) {
+fn law(model: &SolvedModel, number: usize) -> (f64, f64) {
     let FrictionNode { normal, coefficient, bound, .. } = model.friction.nodes[number];
     let alone = normal.map_or(0.0, |row| model.contact.force_without_entries(RowKind::Inequality, row));
     (coefficient, bound + coefficient * alone)
@@ -203,7 +203,7 @@ impl Members {
 
 /// The islands of a problem, by their first bodies. Rows without entries and rows that never close, `c = +infinity`, are
 /// in none of them.
-pub fn islands(model: &Model) -> Result<Vec<Island>> {
+pub fn islands(model: &SolvedModel) -> Result<Vec<Island>> {
     let (bodies, offsets) = (model.bodies.len(), &model.offsets);
     let body_of = |j: usize| offsets[1..].partition_point(|end| *end <= j);
     let all = [&model.contact, &model.equalities];
@@ -277,14 +277,14 @@ fn members(count: usize, all: impl Iterator<Item = (usize, usize)> + Clone) -> V
 }
 
 /// Nodes with friction that may carry a tangential force and have a tangential row that counts.
-fn acting(model: &Model) -> Vec<usize> {
+fn acting(model: &SolvedModel) -> Vec<usize> {
     let friction = &model.friction;
     let counts = |node: &usize| friction.nodes[*node].rows().any(|row| friction.counts(row));
     (0..friction.len()).filter(|&node| friction.acts(node, &model.contact)).filter(counts).collect()
 }
 
 /// Unknowns that the rows of a node touch.
-fn unknowns_of(model: &Model, node: usize) -> impl Iterator<Item = usize> + '_ {
+fn unknowns_of(model: &SolvedModel, node: usize) -> impl Iterator<Item = usize> + '_ {
     let Friction { nodes, rows, .. } = &model.friction;
     let own = nodes[node].rows().flat_map(|row| rows.matrix.row(row));
     let normal = nodes[node].normal.filter(|&row| model.contact.is_finite(row));
@@ -293,7 +293,7 @@ fn unknowns_of(model: &Model, node: usize) -> impl Iterator<Item = usize> + '_ {
 
 /// Gives the islands their acting nodes.
 fn nodes(
-    model: &Model,
+    model: &SolvedModel,
     acting: &[usize],
     islands: &mut [Island],
     island_of: impl Fn(usize) -> usize,
@@ -357,11 +357,12 @@ mod tests {
     use super::*;
     use crate::body::{SparseInput, Storage};
     use crate::constraints::RowsInput;
+    use crate::model::HostModel;
 
     /// Bodies of 1, 2, 1, 2, 1 unknowns; contact rows join 0 and 3, equality rows 4 and 1.
     #[test]
     fn islands_are_joined_by_finite_rows_of_either_kind_alone() {
-        let mut model = Model::new();
+        let mut model = HostModel::new();
         for n in [1, 2, 1, 2, 1] {
             let body = model.add_body(n).unwrap();
             let (ptr, col): (Vec<usize>, Vec<i64>) = ((0..=n).collect(), (0..n as i64).collect());

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use crate::body::{check_diagonal, Body, Digits, GeneralizedInverse, Modes, Pilots, Plan};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
-use crate::model::Model;
+use crate::model::SolvedModel;
 use crate::numbers::setup::NULL_SPACES;
 use crate::progress::{SetupPart, Watch};
 use crate::setup::prepared::PreparedBody;
 
 /// Null spaces and fixing dofs of the pending bodies.
 pub(super) fn plans(
-    model: &Model,
+    model: &SolvedModel,
     pending: &[usize],
     bodies: &[PreparedBody],
     watch: &mut Watch,
@@ -44,7 +44,7 @@ pub(super) fn of_coordinates(body: &Body, mut error: Error) -> Error {
 }
 
 /// Numbers of entries of K of these bodies.
-pub(super) fn weights(model: &Model, bodies: &[usize]) -> Vec<f64> {
+pub(super) fn weights(model: &SolvedModel, bodies: &[usize]) -> Vec<f64> {
     let entries = |&p: &usize| model.bodies[p].body.stiffness.as_ref().map_or(1, |k| k.col.len());
     bodies.iter().map(|p| entries(p) as f64).collect()
 }

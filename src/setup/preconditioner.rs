@@ -6,7 +6,7 @@ use crate::body::{diagonal, dirichlet, dirichlet_bytes, lumped, Stiffness};
 use crate::dual::{constrained, Boundary, Preconditioner};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Operator, Symmetric};
-use crate::model::{Model, Preconditioning};
+use crate::model::{Preconditioning, SolvedModel};
 use crate::platform::memory::reserved;
 use crate::platform::{tally, threads};
 use crate::progress::{Phase, Stops, Watch};
@@ -27,7 +27,7 @@ type BoundaryStiffness = fn(&Symmetric, f64, &[usize]) -> Result<Box<dyn Operato
 
 impl Prepared {
     /// The preconditioners for the options, kept until the options change.
-    pub fn set_up_preconditioner(&mut self, model: &Model, watch: &mut Watch) -> Result<()> {
+    pub fn set_up_preconditioner(&mut self, model: &SolvedModel, watch: &mut Watch) -> Result<()> {
         let Some(duals) = &self.duals else { return Ok(()) };
         let asked: Vec<Preconditioning> = duals.islands.iter().map(|ready| wanted(model, ready)).collect();
         if duals.islands.iter().map(Ready::preconditioning).eq(asked.iter().copied()) {
@@ -60,7 +60,7 @@ impl Prepared {
     }
 }
 
-fn wanted(model: &Model, ready: &Ready) -> Preconditioning {
+fn wanted(model: &SolvedModel, ready: &Ready) -> Preconditioning {
     let of_host = |&p: &usize| model.bodies[p].body.operator.is_some();
     match model.settings.preconditioner {
         Preconditioning::Automatic if ready.island.bodies.iter().all(of_host) => Preconditioning::None,
@@ -78,7 +78,7 @@ fn lumped_pays(ready: &Ready) -> bool {
 }
 
 fn preconditioner(
-    model: &Model,
+    model: &SolvedModel,
     ready: &Ready,
     stiffness: BoundaryStiffness,
     stops: &Stops,

@@ -7,7 +7,7 @@ use crate::body::{GeneralizedInverse, Pilots, Symbolic};
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
-use crate::model::{BodyRevisions, Model, Revisions};
+use crate::model::{BodyRevisions, Revisions, SolvedModel};
 use crate::progress::{Phase, PhaseReport, Phases};
 use crate::setup::operators::Operators;
 use crate::setup::ready::Ready;
@@ -73,7 +73,7 @@ pub struct Work {
 
 impl Prepared {
     /// The dual problems of the present model, if made.
-    pub fn duals(&self, model: &Model) -> Option<&Duals> {
+    pub fn duals(&self, model: &SolvedModel) -> Option<&Duals> {
         self.duals.as_ref().filter(|duals| duals.of == model.revisions)
     }
 
@@ -94,18 +94,18 @@ impl Prepared {
     }
 
     /// As `duals`, after a setup.
-    pub fn done(&self, model: &Model) -> Result<&Duals> {
+    pub fn done(&self, model: &SolvedModel) -> Result<&Duals> {
         self.duals(model).ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))
     }
 
     /// K+ of the present body, if made.
-    pub fn inverse(&self, model: &Model, body: usize) -> Option<&Inverse> {
+    pub fn inverse(&self, model: &SolvedModel, body: usize) -> Option<&Inverse> {
         let own = self.bodies.get(body).filter(|own| own.of == model.bodies[body].revisions);
         own?.inverse.as_deref()
     }
 
     /// Drops data of old revisions, except data that can be reused.
-    pub fn follow(&mut self, model: &Model) {
+    pub fn follow(&mut self, model: &SolvedModel) {
         if self.duals(model).is_none() {
             self.release();
         }
@@ -147,7 +147,7 @@ impl Prepared {
     }
 
     /// The times of the phases, with the memory that is kept.
-    pub fn phases(&self, model: &Model, phases: &Phases) -> Vec<PhaseReport> {
+    pub fn phases(&self, model: &SolvedModel, phases: &Phases) -> Vec<PhaseReport> {
         let mut phases = *phases;
         if let Some(duals) = self.duals(model) {
             let islands = &duals.islands;
@@ -161,7 +161,7 @@ impl Prepared {
 
     /// Sets the keys of all bodies independently of their matrices.
     #[cfg(test)]
-    pub fn set_keys(&mut self, model: &Model, keys: impl Fn(usize) -> [u64; 2]) {
+    pub fn set_keys(&mut self, model: &SolvedModel, keys: impl Fn(usize) -> [u64; 2]) {
         self.follow(model);
         self.bodies.iter_mut().enumerate().for_each(|(p, own)| own.keys = Some(keys(p)));
     }

@@ -1,12 +1,12 @@
 //! Which factors are rounded to single precision: those of the pieces of a body that is cut, if they are only used for
 //! products, whose time is the time to read the factors.
 
-use crate::model::Model;
+use crate::model::SolvedModel;
 use crate::setup::operators::Operators;
 
 /// True for the bodies whose factor may be rounded; `owner`: the body whose factor a body shares.
 pub(super) fn may_be_rounded(
-    model: &Model,
+    model: &SolvedModel,
     operators: &Operators,
     owner: impl Fn(usize) -> usize,
 ) -> Vec<bool> {

@@ -6,7 +6,7 @@ use crate::certificate::{Certificate, FrictionState, RowJudgement};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Result};
 use crate::linalg::Csr;
-use crate::model::Model;
+use crate::model::SolvedModel;
 use crate::platform::memory::zeros;
 use crate::setup::{Members, Prepared, Ready};
 use crate::solve::island::Solved;
@@ -41,7 +41,7 @@ pub struct Answer {
 /// How the islands ended, each with an answer or with the named reason why it has none; of the answers only what
 /// [`Answer`] keeps.
 pub struct Ends<'a> {
-    model: &'a Model,
+    model: &'a SolvedModel,
     islands: &'a [Ready],
     answer: Answer,
     certificate: Option<Certificate>,
@@ -52,7 +52,7 @@ pub struct Ends<'a> {
 }
 
 impl<'a> Ends<'a> {
-    pub fn new(model: &'a Model, prepared: &'a Prepared) -> Result<Self> {
+    pub fn new(model: &'a SolvedModel, prepared: &'a Prepared) -> Result<Self> {
         let counts = model.sizes();
         let rows = [&model.contact, &model.equalities];
         let alone = [RowKind::Inequality, RowKind::Equality]
@@ -136,7 +136,7 @@ impl Answer {
     }
 
     /// Adds the answer of an island and its work counts.
-    fn take_in(&mut self, model: &Model, ready: &Ready, solved: Solved) {
+    fn take_in(&mut self, model: &SolvedModel, ready: &Ready, solved: Solved) {
         let Solved { ending, outcome, finished, unheld, slide, tries, .. } = solved;
         let Ending { solution, recovered, judgement, .. } = ending;
         let island = &ready.island;
@@ -172,7 +172,7 @@ impl Answer {
     }
 
     /// States of contact rows without entries. Returns the energy of the springs of such contact and equality rows.
-    fn take_in_rows_alone(&mut self, model: &Model) -> f64 {
+    fn take_in_rows_alone(&mut self, model: &SolvedModel) -> f64 {
         let contact = &model.contact;
         for i in (0..contact.len()).filter(|&i| contact.is_empty_row(i)) {
             self.states[i] = match (self.lambda[i] > 0.0, contact.rhs[i] > 0.0) {
@@ -189,12 +189,12 @@ impl Answer {
     }
 
     /// `T u - s_old - C_t lambda_t` of all tangential rows, for the current displacements.
-    pub fn slips_of(&self, model: &Model) -> Vec<f64> {
+    pub fn slips_of(&self, model: &SolvedModel) -> Vec<f64> {
         let rows = &model.friction.rows;
         (0..rows.len()).map(|i| -rows.open_gap(i, &self.u, self.tangential[i])).collect()
     }
 
-    fn leave_out(&mut self, model: &Model, ready: &Ready) {
+    fn leave_out(&mut self, model: &SolvedModel, ready: &Ready) {
         let island = &ready.island;
         island.scatter(model, &vec![f64::NAN; island.unknowns()], &mut self.u);
         let none = |members: &Members| vec![f64::NAN; members.numbers.len()];
@@ -210,7 +210,7 @@ impl Answer {
 }
 
 /// Replaces the numbers of the island in a certificate by those of the host; rows that join pieces have no number.
-pub fn named(model: &Model, ready: &Ready, own: Certificate) -> Certificate {
+pub fn named(model: &SolvedModel, ready: &Ready, own: Certificate) -> Certificate {
     let mut named = match &ready.whole {
         Some(whole) => whole.island.named(own),
         None => ready.island.named(own),

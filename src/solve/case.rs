@@ -4,7 +4,7 @@ use crate::certificate::{BodyData, Data};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::norm_max;
-use crate::model::Model;
+use crate::model::SolvedModel;
 use crate::platform::memory::zeros;
 use crate::setup::{Island, Prepared, Ready};
 use crate::solve::method::DualMethod;
@@ -12,7 +12,7 @@ use crate::solve::method::DualMethod;
 /// All inputs for the solution of one island: the data of the host and the results of setup.
 #[derive(Clone, Copy)]
 pub struct Case<'a> {
-    pub model: &'a Model,
+    pub model: &'a SolvedModel,
     pub prepared: &'a Prepared,
     pub ready: &'a Ready,
     /// The method for option `method` other than `proportioning`.

@@ -200,7 +200,7 @@ pub(super) mod tests {
     use super::*;
     use crate::body::{Modes, SparseInput, Storage};
     use crate::constraints::{RowKind, RowsInput};
-    use crate::model::Model;
+    use crate::model::{HostModel, SolvedModel};
     use crate::progress::{Host, Phases};
     use crate::qp::Counts;
     use crate::setup::Prepared;
@@ -211,7 +211,7 @@ pub(super) mod tests {
     /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, one body; `work` receives an answer whose first force,
     /// 2, has the relative error `error`.
     pub fn two_springs(error: f64, work: impl Fn(&mut Certifier, &Solution)) {
-        let mut model = Model::new();
+        let mut model = HostModel::new();
         let body = model.add_body(2).unwrap();
         let springs = SparseInput { ptr: &[0, 1, 2], col: &[0, 1], val: &[1.0; 2], storage: Storage::Lower };
         model.set_stiffness(body, springs).unwrap();
@@ -228,7 +228,7 @@ pub(super) mod tests {
     }
 
     /// Runs `work` with the certifier of the first island.
-    fn judging(model: &Model, work: impl Fn(&mut Certifier)) {
+    fn judging(model: &SolvedModel, work: impl Fn(&mut Certifier)) {
         let (mut prepared, mut watch) =
             (Prepared::default(), Host::default().watch(1e300, Phases::default()));
         prepared.set_up(model, &mut watch).unwrap();
@@ -263,7 +263,7 @@ pub(super) mod tests {
     /// A free spring between dofs 0 and 1, rows on both: compared with the displacements of (17).
     #[test]
     fn the_scale_counts_the_rigid_motion() {
-        let mut model = Model::new();
+        let mut model = HostModel::new();
         let body = model.add_body(2).unwrap();
         let (ptr, col, val) = ([0, 1, 3], [0, 0, 1], [1.0, -1.0, 1.0]);
         let spring = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };

@@ -6,7 +6,7 @@ use std::sync::mpsc::channel;
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
-use crate::model::Model;
+use crate::model::SolvedModel;
 use crate::platform::threads::{self, TaskEvent, Tasks};
 use crate::progress::{LogLevel, Told, Voice, Watch};
 use crate::setup::Prepared;
@@ -18,7 +18,7 @@ use crate::solve::start::Start;
 
 /// Solves every island, in parallel if there are threads; the number of threads does not change any bit of the answers.
 pub fn solve_islands<'a>(
-    model: &'a Model,
+    model: &'a SolvedModel,
     prepared: &'a Prepared,
     method: Option<&dyn DualMethod>,
     start: &Start,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::error::Result;
 use crate::linalg::vector::norm_max;
 use crate::linalg::{Csr, Operator};
-use crate::model::{Accuracy, Model, Settings};
+use crate::model::{Accuracy, Settings, SolvedModel};
 use crate::platform::{interrupt, threads};
 use crate::progress::{Steps, Stops, Voice};
 use crate::qp::{self, Direct, Effort, Qp, Rung, Solution, Tries, Verdict};
@@ -236,7 +236,7 @@ fn corrected(
 
 /// F for the direct method, which observes the memory limit.
 pub fn direct(case: Case<'_>) -> Result<Direct<'_>> {
-    let Case { model: Model { settings, .. }, prepared, ready, .. } = case;
+    let Case { model: SolvedModel { settings, .. }, prepared, ready, .. } = case;
     let asked = usize::try_from(settings.direct_limit).unwrap_or(usize::MAX);
     let most = asked.min(ready.dual.order() + ready.dual.modes());
     let fits = prepared.done(case.model)?.operators.check_more(settings, Direct::bytes(most)).is_ok();

@@ -8,7 +8,7 @@ use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, weighted_norm};
-use crate::model::Model;
+use crate::model::SolvedModel;
 use crate::numbers::linalg::WEAK;
 use crate::platform::interrupt;
 use crate::platform::memory::{copied, zeros};
@@ -64,7 +64,7 @@ pub struct Ending {
 
 /// Recovers and judges the answers of one island.
 pub struct Recovery<'a> {
-    model: &'a Model,
+    model: &'a SolvedModel,
     pub ready: &'a Ready,
     pub scaled: &'a Scaled,
     pub data: Data<'a>,

@@ -4,7 +4,7 @@ use crate::certificate::Certificate;
 use crate::dual::Dual;
 use crate::error::Result;
 use crate::linalg::Operator;
-use crate::model::{Model, Sizes};
+use crate::model::{Sizes, SolvedModel};
 use crate::progress::PhaseReport;
 use crate::qp;
 use crate::setup::{Prepared, Work};
@@ -94,7 +94,7 @@ pub struct Report {
 
 impl Report {
     /// The report before any island is solved.
-    pub fn new(model: &Model, prepared: &Prepared) -> Result<Self> {
+    pub fn new(model: &SolvedModel, prepared: &Prepared) -> Result<Self> {
         let duals = prepared.done(model)?;
         let sum = |of: fn(&Dual) -> usize| duals.islands.iter().map(|ready| of(&ready.dual)).sum();
         Ok(Self {

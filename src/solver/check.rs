@@ -3,7 +3,7 @@
 use crate::certificate::{certify, Candidate, Certificate, Entry};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
-use crate::model::Model;
+use crate::model::HostModel;
 use crate::solve::{named, Case};
 use crate::solver::decomposed::solved;
 use crate::solver::joints::with_glue;
@@ -74,13 +74,13 @@ impl Problem {
 
 /// A contact row that never closes must have no force; a contact row without entries must have its own force, `max(0, -k
 /// c)`.
-fn without_force(model: &Model, lambda: &[f64], worst: Entry) -> Entry {
-    let rows = &model.contact;
+fn without_force(host: &HostModel, lambda: &[f64], worst: Entry) -> Entry {
+    let rows = &host.contact;
     let wrong = |(i, force): (usize, f64)| {
         let alone = rows.is_empty_row(i) && (rows.rhs[i] > 0.0 || rows.compliance[i] > 0.0);
         let off = (lambda[i] - force).abs();
         let known = alone || !rows.is_finite(i);
-        known && !(off <= model.settings.certificate_tolerance * force)
+        known && !(off <= host.settings.certificate_tolerance * force)
     };
     match rows.forces_without_entries(RowKind::Inequality).enumerate().find(|row| wrong(*row)) {
         Some((row, _)) => Entry { figure: f64::INFINITY, ratio: f64::INFINITY, place: Some(row) },

@@ -3,7 +3,7 @@
 use crate::decomposition::{self, Decomposition};
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
-use crate::model::{Model, Parts};
+use crate::model::{HostModel, Parts, SolvedModel};
 use crate::setup::{Prepared, Whole};
 use crate::solve::Answer;
 use crate::solver::findings::Findings;
@@ -18,11 +18,11 @@ pub fn same_bodies(a: &Option<Decomposition>, b: &Option<Decomposition>) -> bool
     }
 }
 
-pub fn solved<'a>(host: &'a Model, decomposition: &'a Option<Decomposition>) -> &'a Model {
+pub fn solved<'a>(host: &'a HostModel, decomposition: &'a Option<Decomposition>) -> &'a SolvedModel {
     decomposition.as_ref().map_or(host, |of| &of.model)
 }
 
-pub fn of_host(host: &Model, decomposition: &Option<Decomposition>, error: Error) -> Error {
+pub fn of_host(host: &HostModel, decomposition: &Option<Decomposition>, error: Error) -> Error {
     match decomposition.as_ref().and_then(|of| of.model.parts.as_deref()) {
         Some(parts) => decomposition::of_host(host, parts, error),
         None => error,
@@ -32,8 +32,8 @@ pub fn of_host(host: &Model, decomposition: &Option<Decomposition>, error: Error
 /// Converts the answer for the pieces to an answer for the host's bodies. Forces of glue follow those of the host's
 /// equality rows: first the forces of joints.
 pub fn answer_of_host(
-    host: &Model,
-    solved: &Model,
+    host: &HostModel,
+    solved: &SolvedModel,
     prepared: &Prepared,
     mut answer: Answer,
 ) -> Result<Answer> {
@@ -69,7 +69,7 @@ pub fn null_space_of<'a>(prepared: &'a Prepared, parts: &Parts, body: usize) -> 
     whole_of(prepared, parts, body)?.null_space(body)
 }
 
-pub fn findings_of_host(host: &Model, solved: &Model, mut findings: Findings) -> Findings {
+pub fn findings_of_host(host: &HostModel, solved: &SolvedModel, mut findings: Findings) -> Findings {
     let bodies = |numbers: &[usize]| {
         let mut bodies: Vec<usize> = numbers.iter().map(|part| solved.name(*part)).collect();
         bodies.dedup();

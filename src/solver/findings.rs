@@ -2,7 +2,7 @@
 
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Place, Proof};
-use crate::model::{kind_and_row, Model};
+use crate::model::{kind_and_row, HostModel, SolvedModel};
 use crate::setup::{Duals, Prepared};
 use crate::solve::{Outcome, Report};
 
@@ -40,7 +40,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    pub fn of_report(host: &Model, model: &Model, prepared: &Prepared, report: &Report) -> Self {
+    pub fn of_report(host: &HostModel, model: &SolvedModel, prepared: &Prepared, report: &Report) -> Self {
         let mut findings = Self::new(host, model, prepared, Ok(report.outcome));
         (findings.undetermined, findings.unheld) = (report.undetermined, report.unheld);
         findings.place.body = report.travelled.or(report.body);
@@ -48,7 +48,7 @@ impl Findings {
     }
 
     /// `model` is the problem that was solved; `error` refers to the bodies of the host.
-    pub fn of_error(host: &Model, model: &Model, prepared: &Prepared, error: &Error) -> Self {
+    pub fn of_error(host: &HostModel, model: &SolvedModel, prepared: &Prepared, error: &Error) -> Self {
         let mut findings = Self::new(host, model, prepared, Err(error.kind));
         findings.place = *error.place;
         findings.proof = error.proof.as_deref().cloned();
@@ -68,8 +68,8 @@ impl Findings {
     }
 
     fn new(
-        host: &Model,
-        model: &Model,
+        host: &HostModel,
+        model: &SolvedModel,
         prepared: &Prepared,
         end: std::result::Result<Outcome, Kind>,
     ) -> Self {
@@ -120,7 +120,7 @@ impl Findings {
 }
 
 /// All rows of a group except the leader, with the factor from the leader, in the order of the stack.
-pub fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
+pub fn redundant(model: &SolvedModel, duals: &Duals) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
     for ready in &duals.islands {
         let (scale, grouping) = (&ready.rows.scaling.scale, &ready.rows.scaling.grouping);
@@ -134,19 +134,19 @@ pub fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
 }
 
 /// Bodies with doubts about their null spaces.
-fn doubtful(model: &Model, prepared: &Prepared) -> Vec<usize> {
+fn doubtful(model: &SolvedModel, prepared: &Prepared) -> Vec<usize> {
     let doubts = |p: &usize| prepared.inverse(model, *p).is_some_and(|of| of.kplus.doubt.is_some());
     (0..model.bodies.len()).filter(doubts).collect()
 }
 
 /// Bodies with soft motions.
-fn soft(model: &Model, prepared: &Prepared) -> Vec<usize> {
+fn soft(model: &SolvedModel, prepared: &Prepared) -> Vec<usize> {
     let soft = |p: &usize| prepared.inverse(model, *p).is_some_and(|of| of.kplus.is_soft());
     (0..model.bodies.len()).filter(soft).collect()
 }
 
 /// Bodies of the host without glue that no row touches, or only rows that never close.
-fn untouched(host: &Model) -> Vec<usize> {
+fn untouched(host: &HostModel) -> Vec<usize> {
     let mut touched = vec![false; host.bodies.len()];
     for rows in [&host.contact, &host.equalities] {
         for (j, _) in (0..rows.len()).filter(|&i| rows.is_finite(i)).flat_map(|i| rows.matrix.row(i)) {
@@ -165,7 +165,7 @@ fn untouched(host: &Model) -> Vec<usize> {
 }
 
 /// A motion of all unknowns on one body with coordinates: velocity of the origin (length) and rotation about the axes.
-pub fn rigid_motion(model: &Model, body: usize, v: &[f64]) -> Option<[f64; 6]> {
+pub fn rigid_motion(model: &HostModel, body: usize, v: &[f64]) -> Option<[f64; 6]> {
     let coordinates = model.bodies.get(body)?.body.coordinates.as_ref()?;
     coordinates.rigid_motion(v.get(model.range(body))?)
 }

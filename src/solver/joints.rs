@@ -3,7 +3,7 @@
 use crate::certificate::Candidate;
 use crate::constraints::RowKind;
 use crate::error::Result;
-use crate::model::{Joint, Model};
+use crate::model::{HostModel, Joint};
 use crate::platform::memory::{copied, filled, zeros};
 
 const WHAT: &str = "forces of glue";
@@ -11,7 +11,7 @@ const WHAT: &str = "forces of glue";
 /// Multipliers of the host's equality rows, then of the joints, with the joint forces that bring the answer closest to
 /// equilibrium: the residual `f - K u - B'lambda` of an unknown is passed to the next unknown with its number and remains
 /// at the last one.
-pub fn with_glue(host: &Model, answer: Candidate) -> Result<Vec<f64>> {
+pub fn with_glue(host: &HostModel, answer: Candidate) -> Result<Vec<f64>> {
     let u = answer.u;
     let (mut all, joints) = (copied(answer.mu, WHAT)?, host.joints()?);
     if joints.is_empty() {
@@ -39,7 +39,7 @@ pub fn with_glue(host: &Model, answer: Candidate) -> Result<Vec<f64>> {
 }
 
 /// Adds the forces of the joints on all bodies; `mu`: one multiplier per joint.
-pub fn add_glue(host: &Model, mu: &[f64], forces: &mut [f64]) -> Result<()> {
+pub fn add_glue(host: &HostModel, mu: &[f64], forces: &mut [f64]) -> Result<()> {
     for (Joint { ends: [before, after], .. }, mu) in host.joints()?.into_iter().zip(mu) {
         forces[before] -= mu;
         forces[after] += mu;

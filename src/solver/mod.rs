@@ -6,6 +6,7 @@ mod decomposed;
 mod findings;
 mod friction;
 mod history;
+mod input;
 mod joints;
 mod known;
 mod noticed;
@@ -24,9 +25,7 @@ pub use crate::constraints::{FrictionInput, RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
 pub use crate::mesh::ElementStorage;
-pub use crate::model::{
-    options, Method, Model, OptionInfo, OptionValue, PaperStep1, PaperUnits, Settings, Sizes,
-};
+pub use crate::model::{options, Method, OptionInfo, OptionValue, PaperStep1, PaperUnits, Settings, Sizes};
 pub use crate::progress::{Listener, LogLevel, LogListener, PhaseReport, Progress, Reply};
 pub use crate::qp::StepKind;
 pub use crate::solve::{DualMethod, HostForm, Outcome, Report, RowState};

@@ -3,13 +3,13 @@
 use crate::constraints::{FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::Csr;
-use crate::model::{Model, Parts};
+use crate::model::{HostModel, Parts};
 use crate::numbers::data::HIGH_FRICTION;
 use crate::numbers::rounding;
 use crate::progress::{Log, LogLevel};
 
 /// Notes: no load, contact rows that overlap before anything moves, contact rows that never close.
-pub fn data(log: &Log, model: &Model) -> Result<()> {
+pub fn data(log: &Log, model: &HostModel) -> Result<()> {
     if !log.is_heard(LogLevel::Result) {
         return Ok(());
     }
@@ -44,7 +44,7 @@ pub fn data(log: &Log, model: &Model) -> Result<()> {
 
 /// Notes: a coefficient of friction that is rather a percentage or an angle, a tangential row that is the normal row, rows
 /// of very different lengths.
-fn friction(log: &Log, model: &Model) -> Result<()> {
+fn friction(log: &Log, model: &HostModel) -> Result<()> {
     let (rows, base) = (&model.friction.rows, model.settings.index_base);
     let number = |node: usize| node as i64 + base;
     let nodes = || model.friction.nodes.iter().enumerate();
@@ -82,7 +82,7 @@ fn friction(log: &Log, model: &Model) -> Result<()> {
 }
 
 /// Unknowns without stiffness, which belong to no part.
-pub fn loose(log: &Log, host: &Model, parts: Option<&Parts>) -> Result<()> {
+pub fn loose(log: &Log, host: &HostModel, parts: Option<&Parts>) -> Result<()> {
     let loose = parts.map(|parts| &parts.loose[..]).unwrap_or_default();
     let mut left = loose.iter().peekable();
     while let Some(&first) = left.next() {
@@ -127,7 +127,7 @@ fn entries(rows: &Csr, i: usize) -> Vec<(usize, f64)> {
 }
 
 /// Rows whose entries cancel, and rows with entries far smaller than all others on their bodies.
-fn unusual(log: &Log, model: &Model) -> Result<()> {
+fn unusual(log: &Log, model: &HostModel) -> Result<()> {
     let body_of = |j: usize| model.offsets[1..].partition_point(|end| *end <= j);
     let all = RowKind::ALL.map(|kind| (kind, model.rows(kind)));
     let mut largest = vec![0.0f64; model.bodies.len()];
@@ -159,7 +159,7 @@ fn unusual(log: &Log, model: &Model) -> Result<()> {
 /// it is called only if the host has a log function.
 pub fn repeated(
     log: &Log,
-    model: &Model,
+    model: &HostModel,
     redundant: impl FnOnce() -> Result<Vec<(usize, f64)>>,
 ) -> Result<()> {
     if !log.is_heard(LogLevel::Phase) {
@@ -185,7 +185,7 @@ pub fn repeated(
 }
 
 /// No load at all: a warning if nothing else moves the bodies.
-fn load(log: &Log, model: &Model, overlaps: bool) -> Result<()> {
+fn load(log: &Log, model: &HostModel, overlaps: bool) -> Result<()> {
     let is_zero = |values: &[f64]| values.iter().all(|value| *value == 0.0);
     if model.bodies.iter().filter_map(|given| given.body.load.as_deref()).any(|load| !is_zero(load)) {
         return Ok(());

@@ -1,13 +1,13 @@
 //! One contact problem: the input of the host, what has been computed from it, and what is kept between calls.
 
-use std::ops::{Deref, DerefMut, Range};
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 use std::time::Instant;
 
 use crate::decomposition::{Connected, Decomposition};
 use crate::error::{Error, Kind, Result};
-use crate::model::{Model, Parts, StartFrom};
+use crate::model::{HostModel, Parts, SolvedModel, StartFrom};
 #[cfg(test)]
 use crate::platform::interrupt::Clock;
 use crate::platform::memory::Headroom;
@@ -20,11 +20,10 @@ use crate::solver::history::{Current, History};
 use crate::solver::noticed;
 use crate::solver::told::{begin, method, result};
 
-/// Bodies, rows and options of one contact problem, its factors, and the answer of its last solve. It dereferences to the
-/// [`Model`], which stores all input of the host.
+/// Bodies, rows and options of one contact problem, its factors, and the answer of its last solve.
 #[derive(Default)]
 pub struct Problem {
-    pub(super) model: Model,
+    pub(super) model: HostModel,
     /// The problem solved in place of the host's if bodies have several parts or are glued by joints.
     pub(super) decomposition: Option<Decomposition>,
     /// The connected components of the host's matrices.
@@ -35,21 +34,6 @@ pub struct Problem {
     method: Option<&'static dyn DualMethod>,
     host: Host,
     phases: Phases,
-}
-
-impl Deref for Problem {
-    type Target = Model;
-
-    fn deref(&self) -> &Model {
-        &self.model
-    }
-}
-
-/// Every change of the model increases a revision, so that results of older data are not used.
-impl DerefMut for Problem {
-    fn deref_mut(&mut self) -> &mut Model {
-        &mut self.model
-    }
 }
 
 impl Problem {
@@ -219,7 +203,7 @@ impl Problem {
 /// Translation between the bodies of the host and their parts.
 impl Problem {
     /// The model that is solved: that of the host, or that of the pieces at the last call that used them.
-    pub(super) fn solved(&self) -> &Model {
+    pub(super) fn solved(&self) -> &SolvedModel {
         solved(&self.model, &self.decomposition)
     }
 

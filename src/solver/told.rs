@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use crate::certificate::Certificate;
 use crate::error::Result;
-use crate::model::{Model, Sizes, Word};
+use crate::model::{HostModel, Sizes, SolvedModel, Word};
 use crate::progress::{Log, LogLevel};
 use crate::setup::{Duals, Prepared, Ready};
 use crate::solve::{Outcome, Report, Slide};
 
 /// Sizes and options at the start of a call.
-pub fn begin(log: &Log, model: &Model, call: &str) -> Result<()> {
+pub fn begin(log: &Log, model: &HostModel, call: &str) -> Result<()> {
     log.begin();
     let (sizes, version) = (model.sizes(), env!("CARGO_PKG_VERSION"));
     let Sizes { bodies, dofs, rows, equalities, nodes, .. } = sizes;
@@ -28,7 +28,7 @@ pub fn begin(log: &Log, model: &Model, call: &str) -> Result<()> {
 }
 
 /// One line on the answer, and warnings.
-pub fn result(log: &Log, model: &Model, report: &Report) -> Result<()> {
+pub fn result(log: &Log, model: &HostModel, report: &Report) -> Result<()> {
     log.say(LogLevel::Result, || result_line(report))?;
     if let Some(body) = report.travelled {
         let body = body as i64 + model.settings.index_base;
@@ -108,7 +108,7 @@ fn friction(report: &Report) -> String {
 }
 
 /// The method for the dual problem.
-pub fn method(log: &Log, model: &Model, prepared: &Prepared, started: &str) -> Result<()> {
+pub fn method(log: &Log, model: &SolvedModel, prepared: &Prepared, started: &str) -> Result<()> {
     let Duals { islands, operators, .. } = prepared.done(model)?;
     let of_island = |ready: &Ready| ready.preconditioning().word().to_string_lossy();
     let mut preconditioners: Vec<_> = islands.iter().map(of_island).collect();

@@ -159,8 +159,7 @@ fn forces_of_the_glue_hold_every_body_and_cancel_in_their_sum() {
         assert!(apart(&glued.by_number(&sums).0, &glued.by_number(&of_rows_alone).0) < 1e-12);
         // a column that stands loose on the others: load, contact and glue have no resultant along z
         for body in 4..8 {
-            let range = problem.range(body);
-            let mut r = vec![0.0; range.len()];
+            let mut r = vec![0.0; problem.order(body).unwrap()];
             problem.reaction(None, body, &mut r).unwrap();
             let along_z = |f: &[f64]| f.iter().skip(2).step_by(3).sum::<f64>();
             let left = along_z(&r) + along_z(&glued.model.loads[body]);
@@ -190,7 +189,8 @@ fn answers_of_others_are_judged_with_the_glue() {
         assert!(!refused.passed() && refused.equality.place.is_none(), "{refused:?}");
         // a copy that moves for itself breaks the glue and the equilibrium around it
         let shared = glued.numbers[7].iter().position(|n| glued.numbers[6].contains(n)).unwrap();
-        let refused = problem.check(&wrong(problem.range(7).start + shared, 1e-6), &lambda, &[]).unwrap();
+        let first: usize = (0..7).map(|body| problem.order(body).unwrap()).sum();
+        let refused = problem.check(&wrong(first + shared, 1e-6), &lambda, &[]).unwrap();
         assert!(!refused.passed() && refused.equality.ratio > 1.0 && refused.equality.place.is_none());
     }
 }

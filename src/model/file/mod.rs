@@ -15,14 +15,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::error::{Error, Kind, Result};
 use crate::mesh::Mesh;
 use crate::model::bodies::SPOILED;
-use crate::model::contents::Model;
+use crate::model::host::HostModel;
 use crate::platform::memory::reserved;
 
 /// Bytes per write to the system.
 const BUFFER: usize = 1 << 17;
 
-impl Model {
-    /// Writes all input to a new file, which replaces an old one when it is complete.
+impl HostModel {
     pub fn write_file(&self, path: &Path) -> Result<()> {
         self.check_kept()?;
         regular(path)?;
@@ -39,7 +38,6 @@ impl Model {
         renamed
     }
 
-    /// The bytes that `write_file` writes.
     pub fn write_bytes(&self) -> Result<Vec<u8>> {
         self.check_kept()?;
         let length = usize::try_from(write::length(self)).unwrap_or(usize::MAX);
@@ -48,8 +46,6 @@ impl Model {
         Ok(bytes)
     }
 
-    /// Takes over the content of a file. The problem must be empty; after an error it is still empty. Options are those
-    /// of the file, all others have their defaults; `index_base` is unchanged.
     pub fn read_file(&mut self, path: &Path) -> Result<()> {
         self.check_empty()?;
         regular(path)?;
@@ -60,7 +56,6 @@ impl Model {
         Ok(())
     }
 
-    /// As `read_file`, from bytes in memory.
     pub fn read_bytes(&mut self, bytes: &[u8]) -> Result<()> {
         self.check_empty()?;
         self.adopt(read::read(bytes, bytes.len() as u64)?);

@@ -5,20 +5,20 @@ use std::io::Read;
 use crate::body::{Modes, SparseInput, Storage};
 use crate::constraints::{FrictionInput, RowKind, RowsInput};
 use crate::error::{Error, Kind, Result};
-use crate::model::contents::Model;
 use crate::model::file::format::{
     Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, FRICTION, LOAD, NULL_SPACE, NUMBERING, OPTIONS,
     PIECES, ROWS, STIFFNESS,
 };
 use crate::model::file::input::{saturated, Input, OpenSection};
 use crate::model::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY, SOFT};
+use crate::model::host::HostModel;
 use crate::model::pieces::PiecesInput;
 use crate::platform::memory::reserved;
 
 /// Reads a problem of `length` bytes.
-pub fn read(source: impl Read, length: u64) -> Result<Model> {
+pub fn read(source: impl Read, length: u64) -> Result<HostModel> {
     let mut input = Input::new(source, length)?;
-    let mut model = Model::new();
+    let mut model = HostModel::new();
     let mut offsets = Offsets::default();
     while !input.is_at_its_end() {
         let mut open = input.open()?;
@@ -157,7 +157,7 @@ impl SectionContent {
     }
 
     /// Makes the call of a host for this section.
-    fn hand_over(self, tag: Tag, model: &mut Model, known: &mut Offsets) -> Result<()> {
+    fn hand_over(self, tag: Tag, model: &mut HostModel, known: &mut Offsets) -> Result<()> {
         if ![OPTIONS, BODY, ROWS, FRICTION].contains(&tag) {
             known.once(tag)?;
         }
@@ -209,7 +209,7 @@ impl SectionContent {
 }
 
 impl Nodes {
-    fn hand_over(&self, model: &mut Model, known: &Offsets) -> Result<()> {
+    fn hand_over(&self, model: &mut HostModel, known: &Offsets) -> Result<()> {
         let (body, dof) = known.places(&self.unknown)?;
         let _room = model.headroom_for_rows(self.s_old.len(), self.val.len())?;
         let rows = RowsInput { ptr: &self.ptr, body: Some(&body), dof: &dof, val: &self.val, rhs: None };

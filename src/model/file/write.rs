@@ -5,11 +5,12 @@ use std::io::{self, Write};
 use crate::body::Modes;
 use crate::constraints::{Friction, RowKind, RowSet};
 use crate::mesh::{Mesh, Piece as MeshPiece};
-use crate::model::contents::{GivenBody, Model};
+use crate::model::contents::GivenBody;
 use crate::model::file::format::{
     self, padding, section_length, Crc, Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, FORMAT, FRICTION,
     HEADER, LOAD, MAGIC, NULL_SPACE, NUMBERING, OPTIONS, PIECES, ROWS, STIFFNESS,
 };
+use crate::model::host::HostModel;
 
 /// Numbers defined by the format.
 pub const EXACT: u64 = 0;
@@ -132,13 +133,13 @@ impl<W: Write> Write for Summed<'_, W> {
 }
 
 /// Bytes of the whole file.
-pub fn length(model: &Model) -> u64 {
+pub fn length(model: &HostModel) -> u64 {
     let sizes = sections(model).filter_map(|section| section_length(section.payload()));
     HEADER + sizes.sum::<u64>()
 }
 
 /// Header and sections.
-pub fn write(model: &Model, out: &mut impl Write) -> io::Result<()> {
+pub fn write(model: &HostModel, out: &mut impl Write) -> io::Result<()> {
     let mut header = Summed { out, crc: Crc::new() };
     header.write_all(&MAGIC)?;
     header.write_all(&FORMAT.to_le_bytes())?;
@@ -150,7 +151,7 @@ pub fn write(model: &Model, out: &mut impl Write) -> io::Result<()> {
 }
 
 /// The sections of a body follow its BODY section; then come rows, and finally nodes with friction.
-fn sections(model: &Model) -> impl Iterator<Item = Section<'_>> {
+fn sections(model: &HostModel) -> impl Iterator<Item = Section<'_>> {
     let options = Section { tag: OPTIONS, pieces: vec![Piece::Text(model.settings.changes())] };
     let bodies = model.bodies.iter().flat_map(of_body);
     let contact = rows(INEQUALITY, model.rows(RowKind::Inequality));

@@ -12,7 +12,7 @@ use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Csr, Matrix};
-use crate::model::{Model, Parts};
+use crate::model::{Parts, SolvedModel};
 use crate::platform::memory::{copied, reserved, zeros};
 use crate::platform::threads;
 use crate::setup::islands::{Island, Members, Nodes};
@@ -60,7 +60,7 @@ pub type OfPart<'a> = dyn Fn(usize) -> Option<(&'a Arc<GeneralizedInverse>, &'a 
 
 impl Whole {
     /// None for an island without pieces.
-    pub fn of(model: &Model, cut: &Island, of_part: &OfPart) -> Result<Option<Self>> {
+    pub fn of(model: &SolvedModel, cut: &Island, of_part: &OfPart) -> Result<Option<Self>> {
         let Some(parts) = model.parts.as_ref() else { return Ok(None) };
         if !cut.bodies.iter().any(|&part| model.is_piece(part)) {
             return Ok(None);
@@ -109,7 +109,7 @@ impl Whole {
     }
 
     /// The judgement of an answer of the pieces by bodies and rows of the host; `data`: the pieces with their loads.
-    pub fn judged(&self, model: &Model, data: &Data, answer: Candidate) -> Result<Judgement> {
+    pub fn judged(&self, model: &SolvedModel, data: &Data, answer: Candidate) -> Result<Judgement> {
         let (u, loads) = (self.mean(answer.u)?, self.loads(data)?);
         let mu = &answer.mu[..self.island.equalities.numbers.len()];
         certify(&self.data(model, &loads)?, Candidate { u: &u, mu, ..answer })
@@ -136,7 +136,7 @@ impl Whole {
     }
 
     /// The data of the island for the certificate; `loads` over its unknowns.
-    fn data<'a>(&'a self, model: &'a Model, loads: &'a [f64]) -> Result<Data<'a>> {
+    fn data<'a>(&'a self, model: &'a SolvedModel, loads: &'a [f64]) -> Result<Data<'a>> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
         let parts = model.parts.as_ref().ok_or_else(missing)?;
         let mut bodies = reserved(self.bodies.len(), WHAT)?;
@@ -176,7 +176,7 @@ impl Whole {
     }
 
     /// `alpha = R'D u / unit` of a body of the host, r: u is `R alpha` plus a motion normal to R.
-    pub fn amplitudes(&self, model: &Model, body: usize, u: &[f64]) -> Vec<f64> {
+    pub fn amplitudes(&self, model: &SolvedModel, body: usize, u: &[f64]) -> Vec<f64> {
         let (Some(vectors), Some(parts)) = (self.null_space(body), &model.parts) else { return Vec::new() };
         let Some(k) = &parts.assembled[body] else { return Vec::new() };
         let unit = power_of_two_below(k.largest_diagonal());
@@ -208,7 +208,7 @@ fn members(
 }
 
 fn whole_body(
-    model: &Model,
+    model: &SolvedModel,
     parts: &Parts,
     (body, part): (usize, Option<usize>),
     of_part: &OfPart,

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Csr, Matrix};
-use crate::model::{Model, Parts};
+use crate::model::{Parts, SolvedModel};
 use crate::numbers::linalg::ROOT;
 use crate::numbers::rounding;
 use crate::platform::memory::{filled, reserved, zeros};
@@ -13,7 +13,7 @@ const WHAT: &str = "the null space of a body that is cut";
 
 /// R of a body from the null spaces of its pieces, n x r, `R'DR = unit`, unit the largest power of two that does not
 /// exceed its largest `K_ii`.
-pub fn null_space(model: &Model, parts: &Parts, body: usize, bases: &[Matrix]) -> Result<Matrix> {
+pub fn null_space(model: &SolvedModel, parts: &Parts, body: usize, bases: &[Matrix]) -> Result<Matrix> {
     let order = parts.offsets[body + 1] - parts.offsets[body];
     let mut blocks = reserved(bases.len(), WHAT)?;
     let mut modes = 0;
@@ -73,7 +73,7 @@ struct Motions<'a> {
 
 /// `G'` of the glue of the body alone, rows x modes: `s (R_c - R_d)` for copies c and d of an unknown, `s^-2 = 1/K_cc +
 /// 1/K_dd`.
-fn glued(model: &Model, parts: &Parts, body: usize, own: &Motions) -> Result<Csr> {
+fn glued(model: &SolvedModel, parts: &Parts, body: usize, own: &Motions) -> Result<Csr> {
     let Motions { bases, blocks, units, sizes } = own;
     let range = parts.of(body);
     let unknowns = parts.starts[range.start]..parts.starts[range.end];

@@ -42,7 +42,7 @@ fn read(bytes: &[u8]) -> Result<Problem, Error> {
 fn refused(bytes: &[u8]) -> Error {
     let mut problem = Problem::new();
     let error = problem.read_bytes(bytes).unwrap_err();
-    assert!(problem.bodies.is_empty() && problem.settings == Problem::new().settings);
+    assert!(problem.model.bodies.is_empty() && problem.model.settings == Problem::new().model.settings);
     assert!(matches!(error.kind, Kind::Io | Kind::Unsupported), "{error:?}");
     assert!(error.place.byte.is_some_and(|byte| byte <= bytes.len()), "{error:?}");
     error
@@ -77,12 +77,15 @@ fn numbers(numbers: &[u64]) -> Vec<u8> {
 fn all_that_is_registered_comes_back_bit_by_bit() {
     let problem = small();
     let bytes = problem.write_bytes().unwrap();
-    assert_eq!(bytes.len() as u64, crate::model::file::write::length(&problem));
+    assert_eq!(bytes.len() as u64, crate::model::file::write::length(&problem.model));
     let mut back = Problem::new();
     back.set_text("threads=3 index_base=1 gamma=2").unwrap();
     back.read_bytes(&bytes).unwrap();
-    assert_eq!(back.settings, problem.settings, "gamma has its default again, texts still count from 1");
-    for (new, old) in back.bodies.iter().zip(&problem.bodies) {
+    assert_eq!(
+        back.model.settings, problem.model.settings,
+        "gamma has its default again, texts still count from 1"
+    );
+    for (new, old) in back.model.bodies.iter().zip(&problem.model.bodies) {
         let (new, old) = (&new.body, &old.body);
         assert_eq!((new.order, &new.stiffness, &new.fixing), (old.order, &old.stiffness, &old.fixing));
         let bits =
@@ -96,7 +99,7 @@ fn all_that_is_registered_comes_back_bit_by_bit() {
         assert!(new.coordinates.iter().zip(&old.coordinates).all(|(new, old)| new.same(old)));
     }
     for kind in [RowKind::Inequality, RowKind::Equality] {
-        let (new, old) = (back.rows(kind), problem.rows(kind));
+        let (new, old) = (back.model.rows(kind), problem.model.rows(kind));
         assert_eq!((&new.matrix, &new.rhs, &new.compliance), (&old.matrix, &old.rhs, &old.compliance));
     }
     assert_eq!(back.sizes().rows, 1);
@@ -111,7 +114,7 @@ fn rows_that_never_close_come_back_and_other_gaps_without_end_are_refused() {
     problem.set_rhs(RowKind::Inequality, 0, &[f64::INFINITY]).unwrap();
     let bytes = problem.write_bytes().unwrap();
     let mut back = read(&bytes).unwrap();
-    assert_eq!(back.rows(RowKind::Inequality).rhs, [f64::INFINITY]);
+    assert_eq!(back.model.rows(RowKind::Inequality).rhs, [f64::INFINITY]);
     assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
     assert_eq!(back.solve().unwrap().outcome, Outcome::Solved);
     assert_eq!(back.multipliers(RowKind::Inequality).unwrap(), [0.0]);

@@ -38,7 +38,7 @@ fn near(found: &[f64], expected: &[f64]) {
 }
 
 fn s_old(problem: &Problem) -> &[f64] {
-    &problem.friction.rows.rhs
+    &problem.model.friction.rows.rhs
 }
 
 /// With s_old = 1/4 and C_t = 1/2: u - 1/4 = lambda_t / 2 and lambda_t = 1 - 2 u give u = 3/8, lambda_t = 1/4.
@@ -122,7 +122,7 @@ fn a_restored_state_has_its_laws_its_references_and_its_answer() {
     near(problem.multipliers(RowKind::Tangential).unwrap(), &[1.0, 0.0]);
     problem.restore_state(state).unwrap();
     assert_eq!(s_old(&problem), [0.25, 0.0]);
-    assert_eq!(problem.friction.nodes[1].coefficient, 0.5);
+    assert_eq!(problem.model.friction.nodes[1].coefficient, 0.5);
     assert_eq!(problem.multipliers(RowKind::Tangential).unwrap(), forces);
     assert_eq!(problem.slips().unwrap(), slips);
     problem.solve().unwrap();

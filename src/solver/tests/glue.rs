@@ -61,7 +61,7 @@ fn a_row_by_number_acts_on_the_first_copy() {
     let mut problem = chains(&[2.0, 4.0, 8.0]);
     let wall = RowsInput { ptr: &[0, 1], body: None, dof: &[5], val: &[1.0], rhs: Some(&[9.0]) };
     problem.add_rows(RowKind::Inequality, wall).unwrap();
-    assert_eq!(problem.contact.matrix.row(0).collect::<Vec<_>>(), [(1, 1.0)]);
+    assert_eq!(problem.model.contact.matrix.row(0).collect::<Vec<_>>(), [(1, 1.0)]);
     problem.set_load(2, &[0.0, 106.0]).unwrap();
     problem.solve().unwrap();
     close(problem.multipliers(RowKind::Inequality).unwrap(), &[106.0 - 21.2]);
@@ -93,12 +93,13 @@ fn numbers_are_shared_on_request_alone_and_the_request_stays_while_they_are() {
 #[test]
 fn a_number_that_a_body_gives_up_is_that_of_the_next_one() {
     let mut problem = chains(&[2.0, 4.0, 8.0]);
-    assert_eq!(problem.unknowns[&5], (0, 1));
+    assert_eq!(problem.model.unknowns[&5], (0, 1));
     problem.set_numbering(0, &[10, 99]).unwrap();
-    assert_eq!(problem.unknowns[&5], (1, 1));
+    assert_eq!(problem.model.unknowns[&5], (1, 1));
     problem.set_numbering(0, &[5, 10]).unwrap();
-    assert_eq!((problem.unknowns[&5], problem.unknowns.get(&99)), ((0, 0), None));
-    let ends: Vec<_> = problem.joints().unwrap().iter().map(|joint| (joint.number, joint.ends)).collect();
+    assert_eq!((problem.model.unknowns[&5], problem.model.unknowns.get(&99)), ((0, 0), None));
+    let ends: Vec<_> =
+        problem.model.joints().unwrap().iter().map(|joint| (joint.number, joint.ends)).collect();
     assert_eq!(ends, [(5, [0, 3]), (5, [3, 5])]);
 }
 

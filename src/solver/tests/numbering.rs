@@ -39,7 +39,7 @@ fn a_number_names_one_unknown_of_all_bodies() {
     problem.set_numbering(0, &[3, 7]).unwrap();
     problem.set_numbering(0, &[3, 1]).unwrap();
     problem.set_numbering(1, &[7, 0]).unwrap();
-    assert_eq!(problem.unknowns.len(), 4);
+    assert_eq!(problem.model.unknowns.len(), 4);
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn loads_rows_and_displacements_go_by_the_numbers() {
         let dof = [place(1, 1) as i64, place(0, 1) as i64];
         let far = RowsInput { ptr: &[0, 2], body: None, dof: &dof, val: &[1.0, -1.0], rhs: Some(&[9.0]) };
         problem.add_rows(RowKind::Inequality, far).unwrap();
-        assert_eq!(problem.contact.matrix.row(0).collect::<Vec<_>>(), [(1, -1.0), (3, 1.0)]);
+        assert_eq!(problem.model.contact.matrix.row(0).collect::<Vec<_>>(), [(1, -1.0), (3, 1.0)]);
         let nobody = RowsInput { dof: &[place(0, 0) as i64, 11], ..far };
         let error = problem.add_rows(RowKind::Inequality, nobody).unwrap_err();
         assert_eq!(

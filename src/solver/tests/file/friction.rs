@@ -31,9 +31,9 @@ fn node(dim: u64, normal: i64, coefficient: f64, s_old: f64) -> Vec<u8> {
 fn nodes_with_friction_come_back_bit_by_bit() {
     let problem = with_nodes();
     let bytes = problem.write_bytes().unwrap();
-    assert_eq!(bytes.len() as u64, crate::model::file::write::length(&problem));
+    assert_eq!(bytes.len() as u64, crate::model::file::write::length(&problem.model));
     let back = read(&bytes).unwrap();
-    let (new, old) = (&back.friction, &problem.friction);
+    let (new, old) = (&back.model.friction, &problem.model.friction);
     assert_eq!((new.dim, &new.nodes), (old.dim, &old.nodes));
     let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
     assert_eq!((&new.rows.matrix, bits(&new.rows.rhs)), (&old.rows.matrix, bits(&old.rows.rhs)));
@@ -76,7 +76,7 @@ fn what_a_call_refuses_is_refused_in_a_file() {
     let wall = of_section(b"ROWS", 0, &wall);
     let nodes = |payload: Vec<u8>| of_section(b"FRIC", 0, &payload);
     let file = |payload| of_sections(FORMAT, &[body.clone(), wall.clone(), nodes(payload)]);
-    assert_eq!(read(&file(node(1, 0, 0.5, 2.0))).unwrap().friction.rows.rhs, [2.0]);
+    assert_eq!(read(&file(node(1, 0, 0.5, 2.0))).unwrap().model.friction.rows.rhs, [2.0]);
     for (payload, text) in [
         (node(1, 1, 0.5, 0.0), "contact rows"),
         (node(1, -2, 0.5, 0.0), "contact rows"),

@@ -16,8 +16,8 @@ fn numbers_of_the_host_come_back_and_rows_go_by_them() {
     for problem in [&mut problem, &mut back] {
         problem.check_whole(10).unwrap();
         problem.add_rows(RowKind::Inequality, by_number).unwrap();
-        assert_eq!(problem.contact.matrix.row(0).collect::<Vec<_>>(), [(0, 1.0), (1, -1.0)]);
-        assert_eq!(problem.contact.matrix.row(1).collect::<Vec<_>>(), [(0, -2.0), (2, 1.0)]);
+        assert_eq!(problem.model.contact.matrix.row(0).collect::<Vec<_>>(), [(0, 1.0), (1, -1.0)]);
+        assert_eq!(problem.model.contact.matrix.row(1).collect::<Vec<_>>(), [(0, -2.0), (2, 1.0)]);
     }
     // a library that does not know the section must refuse the file
     let at = bytes.windows(4).position(|tag| tag == b"NUMB").unwrap();
@@ -36,13 +36,13 @@ fn what_the_coordinates_are_comes_back_and_a_file_says_nothing_of_candidates() {
     problem.set_coordinate_modes(1, Modes::Soft).unwrap();
     let bytes = problem.write_bytes().unwrap();
     let back = read(&bytes).unwrap();
-    assert_eq!([0, 1].map(|p| back.bodies[p].body.coordinate_modes), [Modes::Candidates, Modes::Soft]);
+    assert_eq!([0, 1].map(|p| back.model.bodies[p].body.coordinate_modes), [Modes::Candidates, Modes::Soft]);
     assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
     problem.set_coordinate_modes(1, Modes::Candidates).unwrap();
     assert_eq!(problem.write_bytes().unwrap(), small().write_bytes().unwrap());
     let said = [of_section(b"BODY", 0, &numbers(&[2])), of_section(b"COOF", 0, &numbers(&[1]))];
     let back = read(&of_sections(FORMAT, &said)).unwrap();
-    assert_eq!(back.bodies[0].body.coordinate_modes, Modes::Candidates);
+    assert_eq!(back.model.bodies[0].body.coordinate_modes, Modes::Candidates);
 }
 
 #[test]
