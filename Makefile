@@ -1,5 +1,5 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
-# make quick     after every change: unit tests of the library and the claims of tests/claims.rs
+# make quick     after every change: unit tests of the library and all claims of tests/claims.rs but the three slowest
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
 # make metis     tests with the feature metis
 # make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls file" picks some
@@ -144,8 +144,10 @@ demo: setup
 	@tools/demo.sh build/demo build/data build/pictures
 
 # ---- tests
+# Without the three claims that take as long as all others.
 quick:
-	$(CARGO) test --profile quick --locked -p feti-contact --lib --test claims
+	$(CARGO) test --profile quick --locked -p feti-contact --lib --test claims -- \
+	    --skip pilots::elastic --skip reuse::rows --skip random_problems_in_one_matrix
 
 N ?= 20000
 battery:
@@ -153,12 +155,13 @@ battery:
 	    every_random_problem no_marginal every_varied_problem small_problems_of_the_battery every_hard_problem \
 	    an_answer_does_not_depend problems_with_friction
 
-# What each second try saves: problems that are not solved, or solved wrongly, without it.
+# What each second try saves: problems that are not solved, or solved wrongly, without it. Adds to a log, so that a million problems
+# may be counted in several runs: `make rungs N=100000 SEED=500000000`.
 rungs:
-	for mixture in 1 2; do \
-	    BATTERY=$(N) BATTERY_MIXTURE=$$mixture $(CARGO) test --release --locked --test batteries -- \
+	@for mixture in 1 2; do \
+	    BATTERY=$(N) BATTERY_SEED=$(or $(SEED),0) BATTERY_MIXTURE=$$mixture $(CARGO) test --release --locked --test batteries -- \
 	        what_each_second_try --ignored --nocapture --test-threads=1 || exit 1; \
-	done
+	done | python3 tools/mutants/rungs.py tools/mutants/rungs.txt
 
 # The bits of many answers, a line for 100: `make bits > before`, then again after a change that is to keep them.
 bits:

@@ -1,4 +1,4 @@
-//! Claims about answers, subject by subject, each proved within seconds: `make quick` runs them. docs/tests.md.
+//! Claims about answers, subject by subject, each proved within seconds: `make quick` runs nearly all. docs/tests.md.
 
 mod compliance;
 mod decoupling;
