@@ -9,8 +9,8 @@ use decks::{second, Deck};
 use feti_contact::error::{Error, Kind, Proof, Result};
 use feti_contact::solver::{Outcome, Problem, Report};
 
-use crate::battery::seeds;
 use crate::battery::varied::{answer, CONDITION};
+use crate::battery::{is_second_mixture, seeds};
 use crate::support::hand_over;
 use crate::support::rungs::{self, Ended};
 
@@ -48,7 +48,7 @@ pub struct End {
 }
 
 pub fn mixture() -> &'static hard::Mixture {
-    if std::env::var("BATTERY_MIXTURE").is_ok_and(|text| text == "2") {
+    if is_second_mixture() {
         &SECOND_MIXTURE
     } else {
         &MIXTURE
@@ -312,12 +312,12 @@ fn one_hard_problem_in_full() {
 #[test]
 #[ignore]
 fn what_each_second_try_saves() {
-    let table = rungs::table(seeds(), |seed, without| {
+    let kind = if is_second_mixture() { "hard 2" } else { "hard" };
+    rungs::print(kind, seeds(), |seed, without| {
         let case = hard::mixed(seed, mixture());
         let (End { verdict, .. }, report) = end_without(&case, without);
         let wrong = matches!(verdict, Verdict::Wrong | Verdict::Refused | Verdict::FalseProof);
         let solved = wrong || matches!(verdict, Verdict::Right | Verdict::Open);
         (case.condition <= CONDITION && !case.blurred()).then_some(Ended { solved, wrong, report })
     });
-    println!("{table}");
 }

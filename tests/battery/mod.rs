@@ -6,6 +6,7 @@ mod cost;
 mod hard;
 mod history;
 mod marginal;
+mod models;
 mod modest;
 mod rounded;
 mod second;
@@ -37,9 +38,12 @@ fn some_seeds(share: u64) -> std::ops::Range<u64> {
 }
 
 /// Varied problems are drawn from the second mixture where BATTERY_MIXTURE is 2.
+fn is_second_mixture() -> bool {
+    std::env::var("BATTERY_MIXTURE").is_ok_and(|text| text == "2")
+}
+
 fn mixture() -> &'static Mixture {
-    let second = std::env::var("BATTERY_MIXTURE").is_ok_and(|text| text == "2");
-    if second {
+    if is_second_mixture() {
         &SECOND_MIXTURE
     } else {
         &MIXTURE

@@ -8,7 +8,7 @@ use decks::varied::{self, Varied, MIXTURE, SECOND_MIXTURE};
 use decks::yardstick::{Answer, Yardstick};
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 
-use crate::battery::{mixture, seeds, some_seeds};
+use crate::battery::{is_second_mixture, mixture, seeds, some_seeds};
 use crate::support::hand_over;
 use crate::support::rungs::{self, Ended};
 
@@ -158,11 +158,11 @@ fn every_varied_problem_that_is_solved_is_solved_rightly() {
 #[test]
 #[ignore]
 fn what_each_second_try_saves() {
-    let table = rungs::table(seeds(), |seed, without| {
+    let kind = if is_second_mixture() { "varied 2" } else { "varied" };
+    rungs::print(kind, seeds(), |seed, without| {
         let case = varied::mixed(seed, mixture());
         let (End { error, .. }, report) = end_without(&case, without);
         let wrong = error.is_some_and(|(error, _)| error > 1.0);
         (case.condition <= CONDITION).then_some(Ended { solved: error.is_some(), wrong, report })
     });
-    println!("{table}");
 }

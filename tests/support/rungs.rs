@@ -1,6 +1,5 @@
 //! What each second try saves: every problem is solved with all of them, then again without each that it made.
 
-use std::fmt::Write;
 use std::ops::Range;
 
 use feti_contact::qp::Rung;
@@ -13,7 +12,7 @@ pub struct Ended {
     pub report: Option<Report>,
 }
 
-/// One line of the table.
+/// What is known of one second try, or of all.
 #[derive(Clone, Copy, Default)]
 struct Line {
     made: usize,
@@ -23,8 +22,11 @@ struct Line {
     products: f64,
 }
 
-/// The table of these problems: `solve` solves the problem of a seed without the second tries of these bits; none if it is not judged.
-pub fn table(seeds: Range<u64>, solve: impl Fn(u64, i64) -> Option<Ended> + Sync) -> String {
+/// Prints what `tools/mutants/rungs.py` adds up, a line for each second try that these problems made: kind, seeds, name, the number
+/// of problems that made it, how many more are not solved and how many more are wrong without it, the sum of the logarithms of the
+/// ratios of products. The last line counts all problems. `solve` solves the problem of a seed without the second tries of these bits;
+/// none if it is not judged.
+pub fn print(kind: &str, seeds: Range<u64>, solve: impl Fn(u64, i64) -> Option<Ended> + Sync) {
     let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u64;
     let parts: Vec<Vec<Line>> = std::thread::scope(|scope| {
         let part = |first: u64| {
@@ -40,17 +42,17 @@ pub fn table(seeds: Range<u64>, solve: impl Fn(u64, i64) -> Option<Ended> + Sync
         };
         (0..threads).map(part).collect::<Vec<_>>().into_iter().map(|part| part.join().unwrap()).collect()
     });
-    let mut text = String::from(
-        "| second try | made in | not solved without | wrong without | products |\n|---|---|---|---|---|\n",
-    );
-    for k in 0..=Rung::ALL.len() {
-        let sum = parts.iter().fold(Line::default(), |sum, part| sum.and(&part[k]));
-        let more = 100.0 * ((sum.products / sum.made.max(1) as f64).exp() - 1.0);
-        let (name, what) = Rung::ALL.get(k).map_or(("all of them", ""), |rung| (rung.1, rung.2));
-        let Line { made, unsolved, wrong, .. } = sum;
-        writeln!(text, "| {k} {name}: {what} | {made} | {unsolved:+} | {wrong:+} | {more:+.1} % |").unwrap();
+    let names = Rung::ALL.iter().map(|(_, name, what)| (*name, *what)).chain([("all", "problems")]);
+    for (k, (name, what)) in names.enumerate() {
+        let Line { made, unsolved, wrong, products } =
+            parts.iter().fold(Line::default(), |sum, part| sum.and(&part[k]));
+        if made > 0 || unsolved != 0 {
+            let Range { start, end } = seeds;
+            println!(
+                "rung\t{kind}\t{start}..{end}\t{name}\t{what}\t{made}\t{unsolved}\t{wrong}\t{products:.3}"
+            );
+        }
     }
-    text
 }
 
 fn add(seed: u64, solve: impl Fn(u64, i64) -> Option<Ended>, lines: &mut [Line]) {
