@@ -1,5 +1,5 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
-# make quick     after every change: unit tests of the library and all claims of tests/claims.rs but the three slowest
+# make quick     after every change: unit tests, claims but for the three slowest, documents; make driver  NAME=c_settings: one driver
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
 # make metis     tests with the feature metis
 # make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls file" picks some
@@ -35,7 +35,7 @@ RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO
 STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery rungs bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
-.PHONY: quick man deb
+.PHONY: quick driver man deb
 .PHONY: abi licences numbers vary packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -100,11 +100,11 @@ deb:
 
 # The table of docs/licences.md and LICENSE-THIRD-PARTY, from Cargo.lock and the sources of the crates.
 licences:
-	LICENCES=write $(CARGO) test --release --locked --test documents -- licences::
+	LICENCES=write $(CARGO) test --profile quick --locked -p feti-contact --test documents -- licences::
 
 # The page of thresholds, from src/numbers.
 numbers:
-	NUMBERS=write $(CARGO) test --release --locked --test documents -- numbers::
+	NUMBERS=write $(CARGO) test --profile quick --locked -p feti-contact --test documents -- numbers::
 
 # What changes if a threshold is 10 times larger or smaller (an hour); NUMBERS="qp::LOST" picks some.
 vary:
@@ -146,7 +146,7 @@ demo: setup
 # ---- tests
 # Without the three claims that take as long as all others.
 quick:
-	$(CARGO) test --profile quick --locked -p feti-contact --lib --test claims -- \
+	$(CARGO) test --profile quick --locked -p feti-contact --no-fail-fast --lib --test claims --test documents -- \
 	    --skip pilots::elastic --skip reuse::rows --skip random_problems_in_one_matrix
 
 N ?= 20000
@@ -177,6 +177,12 @@ test:
 	ctest --test-dir build/ctest --output-on-failure -j 2
 
 # With the order of elimination by METIS 5, the library of the system.
+# One driver of tests/abi, after a first `make test`, which installs what CMake looks for.
+driver: stage data
+	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data > /dev/null
+	cmake --build build/ctest --target $(NAME)
+	$$(find build/ctest -type f -name $(NAME)) build/data
+
 metis:
 	@tools/setup.sh libmetis-dev
 	$(CARGO) test --release --locked --features metis --lib linalg

@@ -33,7 +33,7 @@ use feti_contact::solver::{DualMethod, HostForm, Settings};
 
 use host_units::HostUnits;
 
-/// Algorithm 3, as a [`Problem`](feti_contact::solver::Problem) takes it by `offer_method`.
+/// Algorithm 3, as a `feti_contact::solver::Problem` takes it by `offer_method`.
 pub struct Paper;
 
 impl DualMethod for Paper {

@@ -284,6 +284,21 @@ mod tests {
     }
 
     #[test]
+    fn every_option_has_a_row_in_the_documents() {
+        let root = env!("CARGO_MANIFEST_DIR");
+        let pages = ["options", "paper"].map(|page| format!("{root}/docs/{page}.md"));
+        let rows: String = pages.iter().map(|page| std::fs::read_to_string(page).unwrap()).collect();
+        let named =
+            |name: &str| rows.lines().any(|row| row.starts_with('|') && row.contains(&format!("`{name}`")));
+        let missing: Vec<_> = options()
+            .iter()
+            .map(|option| option.name.to_str().unwrap())
+            .filter(|name| !named(name))
+            .collect();
+        assert!(missing.is_empty(), "add a row to docs/options.md for each of these options: {missing:?}");
+    }
+
+    #[test]
     fn unknown_names_wrong_types_and_values_out_of_range_change_nothing() {
         let mut settings = Settings::new();
         let misspelt = settings.set_f64("tolerence", 1e-6).unwrap_err();

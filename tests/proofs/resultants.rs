@@ -61,7 +61,8 @@ fn up_to_1e_10_of_the_load_is_solved_up_to_1e_7_is_marginal_and_more_is_named() 
         let found = problem.solve();
         match ends {
             Some(outcome) => {
-                let report = found.unwrap_or_else(|error| panic!("{pull:e}: {error}"));
+                let report = found
+                    .unwrap_or_else(|error| panic!("{pull:e} of the load should be {outcome:?}: {error}"));
                 assert_eq!(report.outcome, outcome, "{pull:e}");
                 let told = problem.findings().unwrap().unheld;
                 assert!((told / pull - 1.0).abs() < 0.01, "{told:e} of {pull:e}");

@@ -61,7 +61,11 @@ fn different_factors_are_refused_where_no_support_can_have_shortened_a_row() {
         Friction::default().add(input, &contact, &[0, 4]).map(|_| ()).map_err(|error| error.place.value)
     };
     let [n, t] = [2000.0, 1.0].map(|l| [[(0, l * c), (1, l * s)], [(0, -l * s), (1, l * c)]]);
-    assert!(ends(&n[0], &[&t[1]]).is_err_and(|ratio| (ratio.unwrap() - 2e3).abs() < 1e-9));
+    let end = ends(&n[0], &[&t[1]]);
+    assert!(
+        end.is_err_and(|ratio| (ratio.unwrap() - 2e3).abs() < 1e-9),
+        "lengths of 2000 and 1 are refused, with their ratio: {end:?}"
+    );
     assert!(ends(&t[0], &[&n[1]]).is_err());
     assert!(ends(&n[0], &[&n[1]]).is_ok());
     // x struck out of a frame that is turned a little
