@@ -4,9 +4,10 @@ use decks::dense::solve;
 use decks::random::Random;
 use decks::{Block, Deck};
 use feti_contact::error::{Error, Kind, Proof};
-use feti_contact::solver::{Modes, Outcome, RowKind};
+use feti_contact::solver::{Modes, Outcome, Report, RowKind};
 
 use crate::soft::{add_diagonal, difference, given};
+use crate::support::rungs::{self, Ended};
 
 /// Problems of the ordinary run; the variable BATTERY asks for more, BATTERY_SEED for others.
 const PROBLEMS: u64 = 200;
@@ -251,10 +252,19 @@ fn refused(dense: &Dense, points: &[Point], error: &Error) -> (End, String) {
 }
 
 fn end(deck: &Deck) -> (End, String) {
+    let (end, what, _) = end_without(deck, rungs::without());
+    (end, what)
+}
+
+/// Without the second tries of these bits, and the report.
+fn end_without(deck: &Deck, without: i64) -> (End, String, Option<Report>) {
     let dense = Dense::of(deck);
     let points = dense.points(deck);
     let mut problem = given(deck, Modes::Soft);
-    match problem.solve() {
+    problem.set_i64("without", without).unwrap();
+    let solved = problem.solve();
+    let report = solved.as_ref().ok().cloned();
+    let (end, what) = match solved {
         Err(error) => refused(&dense, &points, &error),
         Ok(report) if report.outcome == Outcome::Solved => {
             let (lambda, u) =
@@ -277,15 +287,20 @@ fn end(deck: &Deck) -> (End, String) {
             let is_held = points.iter().any(|point| point.is_minimum);
             (if is_held { End::Unsolved } else { End::Open }, format!("{:?}", report.outcome))
         }
-    }
+    };
+    (end, what, report)
+}
+
+fn seeds() -> std::ops::Range<u64> {
+    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
+    let first: u64 = asked("BATTERY_SEED").unwrap_or(0);
+    first..first + asked("BATTERY").unwrap_or(PROBLEMS)
 }
 
 #[test]
 fn random_driven_problems_end_as_all_their_stationary_points_say() {
-    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
-    let first: u64 = asked("BATTERY_SEED").unwrap_or(0);
     let (mut counts, mut lines) = (std::collections::BTreeMap::<End, usize>::new(), Vec::new());
-    for seed in first..first + asked("BATTERY").unwrap_or(PROBLEMS) {
+    for seed in seeds() {
         let Some((deck, rho)) = case(seed) else {
             *counts.entry(End::None).or_default() += 1;
             continue;
@@ -299,10 +314,21 @@ fn random_driven_problems_end_as_all_their_stationary_points_say() {
             lines.push(format!("{seed}: rho {rho:.4} {end:?} {what}"));
         }
     }
-    if asked("BATTERY").is_some() {
+    if std::env::var("BATTERY").is_ok() {
         println!("{counts:?}\n{}", lines.join("\n"));
     }
     let of = |end: End| counts.get(&end).copied().unwrap_or(0);
     assert!(of(End::Wrong) + of(End::Unsolved) == 0, "{counts:?}\n{}", lines.join("\n"));
     assert!(of(End::Answered) > 0 && of(End::Refused) > 0, "{counts:?}");
+}
+
+/// `make rungs`.
+#[test]
+#[ignore]
+fn what_each_second_try_saves() {
+    rungs::print("driven", seeds(), |seed, without| {
+        let (deck, _) = case(seed).filter(|(_, rho)| (rho - 1.0).abs() >= CRITICAL)?;
+        let (end, _, report) = end_without(&deck, without);
+        Some(Ended { solved: !matches!(end, End::Unsolved | End::Open), wrong: end == End::Wrong, report })
+    });
 }
