@@ -6,6 +6,7 @@
 //! | `random`, `hash` | fixed random numbers, keys of lists |
 //! | `dense` | columns; packed symmetric matrices; pivoted Cholesky, eigenvalues, singular values |
 //! | `sparse` | by rows; symmetric; graphs; Gram matrices |
+//! | `partition` | halves of graphs with few edges between them |
 //! | `cholesky` | the sparse factorisation and operations with the factor |
 //! | `semidefinite` | systems that may be singular, dense and sparse |
 
@@ -13,6 +14,7 @@ pub mod array;
 pub mod cholesky;
 pub mod dense;
 pub mod hash;
+pub mod partition;
 pub mod random;
 pub mod semidefinite;
 pub mod sparse;

@@ -18,8 +18,6 @@ pub const SNAP: f64 = 0.015;
 pub const DISCONNECTED: f64 = 0.02;
 /// Largest weight of a piece that gets vertices, relative to the mean.
 pub const FULL_BY_WEIGHT: f64 = 1.05;
-/// Part of the vertices left at which coarsening ends.
-pub const SHRINKS: f64 = 0.95;
 /// Crossings and gaps that differ by less than this part are equal.
 pub const TIE: f64 = 0.01;
 /// Extent relative to the largest below which a body has no such direction.

@@ -23,6 +23,8 @@ pub const ADDED: f64 = 1e3;
 pub const HELD_PIVOT: f64 = 1e200;
 /// Weight of a coarse vertex relative to the mean: a graph with much heavier vertices has no good halves.
 pub const HEAVIEST: f64 = 1.5;
+/// Part of a graph that is left, or is on one side of a separator, at which coarsening, or dissection, ends.
+pub const SHRINKS: f64 = 0.95;
 /// Weight of a side of a separator relative to half of the total.
 #[cfg_attr(feature = "metis", allow(dead_code))]
 pub const IMBALANCE: f64 = 1.2;

@@ -3,7 +3,7 @@
 
 use decks::{Blocks, Cube, Deck};
 use feti_contact::error::Kind;
-use feti_contact::solver::Problem;
+use feti_contact::solver::{Problem, Report};
 
 use crate::invariance::answer::{decks, Answer};
 use crate::support::hand_over;
@@ -129,9 +129,13 @@ fn every_phase_has_its_time_and_what_is_kept_its_bytes() {
     ];
     assert_eq!(names, expected);
     assert!(report.phases.iter().all(|phase| phase.seconds > 0.0), "{:?}", report.phases);
-    let sum: f64 = report.phases.iter().map(|phase| phase.seconds).sum();
-    let all = report.seconds_setup + report.seconds_solve;
-    assert!(sum <= 1.001 * all && sum > 0.8 * all, "{sum} of {all} s");
+    // the part of the time that phases have; less if the machine does something else between two of them
+    let part_of = |report: &Report| {
+        let sum: f64 = report.phases.iter().map(|phase| phase.seconds).sum();
+        sum / (report.seconds_setup + report.seconds_solve)
+    };
+    let parts: Vec<f64> = (0..5).map(|_| part_of(&with(deck, "explicit").solve().unwrap())).collect();
+    assert!(parts.iter().all(|part| *part <= 1.001) && parts.iter().any(|part| *part > 0.8), "{parts:?}");
     let bytes: Vec<usize> = report.phases.iter().map(|phase| phase.bytes).collect();
     assert_eq!((bytes[3], bytes[4]), (report.factor_bytes, report.operator_bytes));
     assert!(bytes[5] > 0);

@@ -1,9 +1,9 @@
 //! The direction in which planes cut a set of elements: the one that cuts through the fewest unknowns.
 
-use super::graph::Graph;
 use super::incidence::{mixed, WHAT};
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
+use crate::linalg::partition::Weighted;
 use crate::linalg::Matrix;
 use crate::numbers::cut::{FLAT, SLOPE, TIE};
 use crate::platform::memory::reserved;
@@ -18,7 +18,7 @@ pub const AXES: Frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A set of elements: the whole graph, the centre of each vertex, and the label of the vertices in the set.
 pub struct Set<'a> {
-    pub graph: &'a Graph,
+    pub graph: &'a Weighted,
     pub centres: &'a [Point],
     pub label: &'a [u32],
     pub members: &'a [u32],
@@ -121,7 +121,7 @@ impl Set<'_> {
 }
 
 /// The three main directions of neighbours in a mesh of bricks, in any orientation.
-pub fn of_mesh(graph: &Graph, centres: &[Point]) -> Result<Frame> {
+pub fn of_mesh(graph: &Weighted, centres: &[Point]) -> Result<Frame> {
     const EDGES: usize = 300;
     let step = graph.count().div_ceil(EDGES / 3).max(1);
     let mut edges: Vec<Point> = reserved(EDGES * 8, WHAT)?;

@@ -3,120 +3,50 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use super::incidence::{Incidence, Neighbours, NONE, WHAT};
+use super::incidence::{Incidence, Neighbours, WHAT};
 use crate::error::Result;
+use crate::linalg::partition::Weighted;
 use crate::platform::interrupt;
-use crate::platform::memory::{copied, ensure_spare, filled, refusal, reserved};
+use crate::platform::memory::{ensure_spare, filled, refusal, reserved};
 
 /// Two elements have a common face if they share at least this part of the largest number of unknowns that either shares
 /// with a neighbour. A common edge has at most 2/3 of the unknowns of a face (linear tetrahedra), a triangle 3/4 of those
 /// of a quadrangle (pyramids, wedges).
 const FACE: (u32, u32) = (3, 4);
 
-/// The neighbours of `i` are `to[ptr[i]..ptr[i+1]]`; `edge` has the numbers of unknowns shared with them.
-pub struct Graph {
-    pub ptr: Vec<usize>,
-    pub to: Vec<u32>,
-    pub edge: Vec<u32>,
-    /// Weights whose sums over the pieces shall be equal.
-    pub weight: Vec<f64>,
-}
-
-impl Graph {
-    pub fn of(incidence: &Incidence) -> Result<Self> {
-        let count = incidence.count();
-        let mut room = Neighbours::room(count)?;
-        let mut most: Vec<u32> = filled(count, 0, WHAT)?;
-        for e in 0..count {
-            if e % 4096 == 0 {
-                interrupt::check()?;
-            }
-            let mut here = 0;
-            incidence.neighbours(e, &mut room, |_, share| here = here.max(share));
-            most[e] = here;
+/// The graph of the elements; edges have the numbers of unknowns shared.
+pub fn faces(incidence: &Incidence) -> Result<Weighted> {
+    let count = incidence.count();
+    let mut room = Neighbours::room(count)?;
+    let mut most: Vec<u32> = filled(count, 0, WHAT)?;
+    for e in 0..count {
+        if e % 4096 == 0 {
+            interrupt::check()?;
         }
-        let (mut ptr, mut to, mut edge) = (reserved(count + 1, WHAT)?, Vec::new(), Vec::new());
-        let mut here: Vec<(u32, u32)> = Vec::new();
-        ptr.push(0);
-        for e in 0..count {
-            if e % 4096 == 0 {
-                interrupt::check()?;
-            }
-            here.clear();
-            incidence.neighbours(e, &mut room, |f, share| {
-                if FACE.1 * share >= FACE.0 * most[e].min(most[f as usize]) {
-                    here.push((f, share));
-                }
-            });
-            enlarge(&mut to, here.len())?;
-            enlarge(&mut edge, here.len())?;
-            to.extend(here.iter().map(|h| h.0));
-            edge.extend(here.iter().map(|h| h.1));
-            ptr.push(to.len());
+        let mut here = 0;
+        incidence.neighbours(e, &mut room, |_, share| here = here.max(share));
+        most[e] = here;
+    }
+    let (mut ptr, mut adj, mut edge) = (reserved(count + 1, WHAT)?, Vec::new(), Vec::new());
+    let mut here: Vec<(u32, u32)> = Vec::new();
+    ptr.push(0);
+    for e in 0..count {
+        if e % 4096 == 0 {
+            interrupt::check()?;
         }
-        Ok(Self { ptr, to, edge, weight: weights(incidence)? })
-    }
-
-    pub fn count(&self) -> usize {
-        self.weight.len()
-    }
-
-    pub fn copy(&self) -> Result<Self> {
-        let (ptr, to) = (copied(&self.ptr, WHAT)?, copied(&self.to, WHAT)?);
-        Ok(Self { ptr, to, edge: copied(&self.edge, WHAT)?, weight: copied(&self.weight, WHAT)? })
-    }
-
-    /// Neighbours and the numbers of unknowns shared with them.
-    pub fn around(&self, i: usize) -> impl Iterator<Item = (usize, u32)> + '_ {
-        let range = self.ptr[i]..self.ptr[i + 1];
-        self.to[range.clone()].iter().map(|&j| j as usize).zip(self.edge[range].iter().copied())
-    }
-
-    /// Connected parts of the vertices with equal labels: the part of each vertex, numbered by first vertices, and the
-    /// weights of the parts.
-    pub fn parts(&self, label: &[u32]) -> Result<(Vec<u32>, Vec<f64>)> {
-        let mut part: Vec<u32> = filled(self.count(), NONE, WHAT)?;
-        let (mut weights, mut queue) = (Vec::new(), reserved(self.count(), WHAT)?);
-        for first in 0..self.count() {
-            if part[first] != NONE {
-                continue;
+        here.clear();
+        incidence.neighbours(e, &mut room, |f, share| {
+            if FACE.1 * share >= FACE.0 * most[e].min(most[f as usize]) {
+                here.push((f, share));
             }
-            let (number, mut weight) = (weights.len() as u32, 0.0);
-            part[first] = number;
-            queue.push(first as u32);
-            while let Some(i) = queue.pop() {
-                weight += self.weight[i as usize];
-                for &j in &self.to[self.ptr[i as usize]..self.ptr[i as usize + 1]] {
-                    if part[j as usize] == NONE && label[j as usize] == label[i as usize] {
-                        part[j as usize] = number;
-                        queue.push(j);
-                    }
-                }
-            }
-            weights.push(weight);
-        }
-        Ok((part, weights))
+        });
+        enlarge(&mut adj, here.len())?;
+        enlarge(&mut edge, here.len())?;
+        adj.extend(here.iter().map(|h| h.0));
+        edge.extend(here.iter().map(|h| h.1));
+        ptr.push(adj.len());
     }
-
-    /// The graph of the vertices `some`, numbered in their order. `place`: work array with an entry per vertex, `NONE`
-    /// before and after.
-    pub fn of_some(&self, some: &[u32], place: &mut [u32]) -> Result<Self> {
-        some.iter().enumerate().for_each(|(at, &i)| place[i as usize] = at as u32);
-        let entries = some.iter().map(|&i| self.ptr[i as usize + 1] - self.ptr[i as usize]).sum();
-        let (mut ptr, mut to) = (reserved(some.len() + 1, WHAT)?, reserved(entries, WHAT)?);
-        let (mut edge, mut weight) = (reserved(entries, WHAT)?, reserved(some.len(), WHAT)?);
-        ptr.push(0);
-        for &i in some {
-            for (j, share) in self.around(i as usize).filter(|&(j, _)| place[j] != NONE) {
-                to.push(place[j]);
-                edge.push(share);
-            }
-            ptr.push(to.len());
-            weight.push(self.weight[i as usize]);
-        }
-        some.iter().for_each(|&i| place[i as usize] = NONE);
-        Ok(Self { ptr, to, edge, weight })
-    }
+    Ok(Weighted { ptr, adj, edge, weight: weights(incidence)? })
 }
 
 /// Reserves room for `more` entries; if it must grow, by half of the length.
@@ -129,7 +59,7 @@ fn enlarge(list: &mut Vec<u32>, more: usize) -> Result<()> {
     list.try_reserve_exact(list.len() / 2 + more + 1024).map_err(|_| refusal(bytes, WHAT))
 }
 
-/// The number of unknowns of an element, divided by the largest number of elements at one of its nodes: equal elements
+/// Weights whose sums over the pieces shall be equal: the number of unknowns of an element, divided by the largest number of elements at one of its nodes: equal elements
 /// have equal weights, at the surface of the body as inside.
 fn weights(incidence: &Incidence) -> Result<Vec<f64>> {
     let mut weights = reserved(incidence.count(), WHAT)?;

@@ -3,10 +3,10 @@
 
 use super::Elements;
 use crate::error::{Error, Kind, Result};
+pub use crate::linalg::partition::NONE;
 use crate::platform::memory::{filled, reserved};
 
 pub const WHAT: &str = "the cut of a body";
-pub const NONE: u32 = u32::MAX;
 /// An unknown of more elements than this (shared by a whole surface) is in every piece, and does not identify faces.
 const MOST_AT_A_NODE: usize = 500;
 

@@ -4,7 +4,6 @@
 //! their centres are known, otherwise through the graph of their faces (`sections`, `halves`). Then scraps are given to
 //! neighbours (`scraps`), and single elements are moved while this reduces the number of shared unknowns (`refine`).
 
-mod coarse;
 mod directions;
 mod graph;
 mod halves;
@@ -21,7 +20,7 @@ use crate::error::{Error, Kind, Result};
 use crate::numbers::cut::PIECE;
 use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
-use graph::{shares, Graph};
+use graph::{faces, shares};
 use incidence::{Incidence, NONE, WHAT};
 
 /// The unknowns of the elements, without held unknowns: element `e` has `dof[ptr[e]..ptr[e+1]]`, each less than
@@ -68,7 +67,7 @@ pub fn cut(elements: &Elements, centres: Option<&[[f64; 3]]>, pieces: usize) -> 
 
 /// The pieces of elements without hosts.
 fn cut_all(incidence: &Incidence, centres: Option<&[[f64; 3]]>, pieces: usize) -> Result<Vec<u32>> {
-    let graph = Graph::of(incidence)?;
+    let graph = faces(incidence)?;
     let (mut piece, weights) = graph.parts(&filled(graph.count(), 0, WHAT)?)?;
     let mut vertices = filled(weights.len(), 0, WHAT)?;
     piece.iter().for_each(|&part| vertices[part as usize] += 1);

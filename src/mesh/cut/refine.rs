@@ -1,8 +1,8 @@
 //! Moves single elements to a neighbouring piece while this reduces the shared unknowns, or makes the pieces more equal.
 
-use super::graph::Graph;
 use super::incidence::{Incidence, NONE, WHAT};
 use crate::error::Result;
+use crate::linalg::partition::Weighted;
 use crate::numbers::cut::{FULL, OVERFULL};
 use crate::platform::interrupt;
 use crate::platform::memory::filled;
@@ -11,7 +11,7 @@ const ROUNDS: usize = 8;
 
 struct Refinement<'a> {
     incidence: &'a Incidence,
-    graph: &'a Graph,
+    graph: &'a Weighted,
     piece: &'a mut [u32],
     /// Unknowns of each piece.
     size: Vec<i64>,
@@ -24,7 +24,7 @@ struct Refinement<'a> {
     around: Vec<u32>,
 }
 
-pub fn refine(incidence: &Incidence, graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
+pub fn refine(incidence: &Incidence, graph: &Weighted, piece: &mut [u32], count: usize) -> Result<()> {
     let (size, met) = (filled(count, 0, WHAT)?, filled(piece.len(), 0, WHAT)?);
     let (mean, settled, around) = (0.0, filled(piece.len(), false, WHAT)?, Vec::new());
     let mut refinement =

@@ -1,14 +1,14 @@
 //! Pieces that are not connected: all parts of a piece except the heaviest are given to neighbours.
 
-use super::graph::Graph;
 use super::incidence::{NONE, WHAT};
 use crate::error::Result;
+use crate::linalg::partition::Weighted;
 use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
 
 /// Gives every part of a piece except its heaviest to the piece that shares most unknowns with it, until every piece is
 /// connected.
-pub fn give(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
+pub fn give(graph: &Weighted, piece: &mut [u32], count: usize) -> Result<()> {
     loop {
         interrupt::check()?;
         let (part, weights) = graph.parts(piece)?;
@@ -19,7 +19,7 @@ pub fn give(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
 }
 
 /// One round; returns whether any part was given away.
-fn given(graph: &Graph, piece: &mut [u32], count: usize, parts: (&[u32], &[f64])) -> Result<bool> {
+fn given(graph: &Weighted, piece: &mut [u32], count: usize, parts: (&[u32], &[f64])) -> Result<bool> {
     let (part, weights) = parts;
     let mut heaviest: Vec<u32> = filled(count, NONE, WHAT)?;
     for i in 0..graph.count() {

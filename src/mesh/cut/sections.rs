@@ -1,16 +1,17 @@
 //! The cut by planes: a set of elements is cut into slabs, and each slab again, until every set is a piece.
 
-use super::coarse::{coarsen, projected};
 use super::directions::{dot, of_mesh, Choice, Frame, Point, Set};
-use super::graph::Graph;
 use super::halves::halves;
 use super::incidence::{NONE, WHAT};
 use super::scraps::give;
 use super::smooth::smooth;
 use crate::error::Result;
+use crate::linalg::partition::levels::{coarsest, levels, refined};
+use crate::linalg::partition::Weighted;
 use crate::numbers::cut::{DISCONNECTED, LONG, SNAP, TIE};
+use crate::numbers::linalg::HEAVIEST;
 use crate::platform::interrupt;
-use crate::platform::memory::{filled, reserved};
+use crate::platform::memory::{copied, filled, reserved};
 
 /// Number of groups of elements per piece if the graph alone is cut.
 const GROUPS: usize = 150;
@@ -24,7 +25,7 @@ struct Task {
 }
 
 struct Sections<'a> {
-    graph: &'a Graph,
+    graph: &'a Weighted,
     centres: Option<&'a [Point]>,
     frame: Frame,
     piece: &'a mut [u32],
@@ -35,7 +36,12 @@ struct Sections<'a> {
 
 /// Cuts each part, the vertices with its number in `piece`, into its share of pieces: by planes if centres are given,
 /// otherwise through the graph.
-pub fn sections(graph: &Graph, centres: Option<&[Point]>, piece: &mut [u32], shares: &[usize]) -> Result<()> {
+pub fn sections(
+    graph: &Weighted,
+    centres: Option<&[Point]>,
+    piece: &mut [u32],
+    shares: &[usize],
+) -> Result<()> {
     let frame = centres.map_or(Ok(super::directions::AXES), |centres| of_mesh(graph, centres))?;
     let count = graph.count();
     let mut order = reserved(count, WHAT)?;
@@ -65,28 +71,24 @@ pub fn sections(graph: &Graph, centres: Option<&[Point]>, piece: &mut [u32], sha
 
 /// The cut without centres: groups of elements are cut, then each finer group and finally each element moves to the piece
 /// with which it shares most.
-pub fn by_levels(graph: &Graph, piece: &mut [u32], shares: &[usize]) -> Result<()> {
-    let enough = GROUPS * shares.iter().sum::<usize>();
-    let levels = coarsen(graph.copy()?, enough.max(2000))?;
+pub fn by_levels(graph: &Weighted, piece: &mut [u32], shares: &[usize]) -> Result<()> {
+    let enough = (GROUPS * shares.iter().sum::<usize>()).max(2000);
+    let levels = levels(graph, enough, HEAVIEST * graph.total() / enough as f64, None)?;
     // a group lies in one part, since it was formed across faces
-    let mut label = filled(graph.count(), 0, WHAT)?;
-    label.copy_from_slice(piece);
-    for level in levels.iter().filter(|level| !level.coarse.is_empty()) {
-        let groups = level.coarse.iter().max().map_or(0, |&last| last as usize + 1);
-        let mut of_groups = filled(groups, 0, WHAT)?;
+    let mut label = copied(piece, WHAT)?;
+    for level in &levels {
+        let mut of_groups = filled(level.graph.count(), 0, WHAT)?;
         level.coarse.iter().zip(&label).for_each(|(&c, &l)| of_groups[c as usize] = l);
         label = of_groups;
     }
-    let Some((last, finer)) = levels.split_last() else { return Ok(()) };
-    let count = shares.iter().sum();
-    sections(&last.graph, None, &mut label, shares)?;
-    give(&last.graph, &mut label, count)?;
-    smooth(&last.graph, &mut label, count)?;
-    for level in finer.iter().rev() {
-        label = projected(&label, &level.coarse)?;
-        give(&level.graph, &mut label, count)?;
-        smooth(&level.graph, &mut label, count)?;
-    }
+    let (last, count) = (coarsest(graph, &levels), shares.iter().sum());
+    let smoothed = |graph: &Weighted, mut label: Vec<u32>| {
+        give(graph, &mut label, count)?;
+        smooth(graph, &mut label, count)?;
+        Ok(label)
+    };
+    sections(last, None, &mut label, shares)?;
+    let label = refined(graph, &levels, smoothed(last, label)?, smoothed)?;
     piece.copy_from_slice(&label);
     Ok(())
 }
@@ -175,12 +177,12 @@ impl Sections<'_> {
         let members = &mut self.order[task.from..task.to];
         let part = self.graph.of_some(members, &mut self.place)?;
         let low = task.pieces / 2;
-        let side = halves(part, low as f64 / task.pieces as f64)?;
+        let side = halves(&part, low as f64 / task.pieces as f64)?;
         self.keys.clear();
-        self.keys.extend(members.iter().zip(&side).map(|(&i, &side)| (f64::from(u8::from(side)), i)));
+        self.keys.extend(members.iter().zip(&side).map(|(&i, &side)| (f64::from(side), i)));
         self.keys.sort_by(|a, b| a.0.total_cmp(&b.0));
         members.iter_mut().zip(&self.keys).for_each(|(i, key)| *i = key.1);
-        let inside = side.iter().filter(|&&side| !side).count();
+        let inside = side.iter().filter(|&&side| side == 0).count();
         let split = inside.clamp(low, members.len() - (task.pieces - low));
         let sizes =
             [(0, split, task.first, low), (split, members.len(), task.first + low, task.pieces - low)];

@@ -1,15 +1,15 @@
 //! Moves vertices of a graph, which are groups of elements, to the neighbouring piece with which they share more.
 
-use super::graph::Graph;
 use super::incidence::WHAT;
 use crate::error::Result;
+use crate::linalg::partition::Weighted;
 use crate::numbers::cut::FULL_BY_WEIGHT;
 use crate::platform::interrupt;
 use crate::platform::memory::filled;
 
 const ROUNDS: usize = 6;
 
-pub fn smooth(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
+pub fn smooth(graph: &Weighted, piece: &mut [u32], count: usize) -> Result<()> {
     let mut weight = filled(count, 0.0, WHAT)?;
     (0..graph.count()).for_each(|i| weight[piece[i] as usize] += graph.weight[i]);
     let most = FULL_BY_WEIGHT * weight.iter().sum::<f64>() / count as f64;
@@ -46,7 +46,7 @@ pub fn smooth(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
 }
 
 /// Number of unknowns that a vertex shares with each piece around it.
-fn shared(graph: &Graph, piece: &[u32], i: usize, near: &mut Vec<(u32, i64)>) {
+fn shared(graph: &Weighted, piece: &[u32], i: usize, near: &mut Vec<(u32, i64)>) {
     near.clear();
     for (j, share) in graph.around(i) {
         match near.iter_mut().find(|n| n.0 == piece[j]) {

@@ -1,18 +1,16 @@
 //! Nested dissection: a separator is ordered last, after the two parts that it separates, which are
 //! ordered recursively; small parts, and those that nothing divides, are ordered by minimum degree.
 
-mod bisection;
-mod coarsening;
 mod leaves;
 mod multilevel;
 mod separator;
-mod weighted;
 
 use separator::{Separator, BETWEEN};
-use weighted::Weighted;
 
 use crate::error::Result;
 use crate::linalg::cholesky::analysis::minimum_degree::minimum_degree;
+use crate::linalg::partition::{Weighted, NONE};
+use crate::numbers::linalg::SHRINKS;
 use crate::platform::memory::filled;
 
 const WHAT: &str = "the ordering of a body";
@@ -30,15 +28,15 @@ struct Part {
 pub fn dissect(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     let nodes = ptr.len() - 1;
     let mut order = filled(nodes, 0, WHAT)?;
-    let mut number = filled(nodes, u32::MAX, WHAT)?;
-    let whole = Part { graph: Weighted::of(ptr, adj), own: (0..nodes as u32).collect(), begin: 0 };
+    let mut number = filled(nodes, NONE, WHAT)?;
+    let whole = Part { graph: alike(ptr, adj)?, own: (0..nodes as u32).collect(), begin: 0 };
     let mut parts = vec![whole];
     while let Some(mut part) = parts.pop() {
         let size = part.own.len();
         if size <= LEAF {
             leaves::minimum_degree(ptr, adj, &mut part.own, &mut number);
-        } else if let Some(found) = multilevel::separator(&part.graph).filter(divides) {
-            parts.extend(part.divided(&found.side, &mut order));
+        } else if let Some(found) = multilevel::separator(&part.graph)?.filter(divides) {
+            parts.extend(part.divided(&found.side, &mut order)?);
             continue;
         } else {
             let (ptr, adj) = signed(&part.graph);
@@ -51,17 +49,20 @@ pub fn dissect(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
 
 impl Part {
     /// Both sides; the separator is put at the end of the order of the part.
-    fn divided(self, side: &[u8], order: &mut [usize]) -> [Part; 2] {
+    fn divided(self, side: &[u8], order: &mut [usize]) -> Result<[Part; 2]> {
         let mut at = self.begin;
-        let parts = [0, 1].map(|which| {
-            let (graph, inside) = self.graph.part(side, which);
-            let begin = at;
-            at += inside.len();
-            Part { graph, own: inside.into_iter().map(|v| self.own[v as usize]).collect(), begin }
-        });
+        let mut place = filled(side.len(), NONE, WHAT)?;
+        let mut part = |which: u8| -> Result<Part> {
+            let mut own: Vec<u32> = (0..side.len() as u32).filter(|&v| side[v as usize] == which).collect();
+            let graph = self.graph.of_some(&own, &mut place)?;
+            own.iter_mut().for_each(|v| *v = self.own[*v as usize]);
+            at += own.len();
+            Ok(Part { graph, begin: at - own.len(), own })
+        };
+        let parts = [part(0)?, part(1)?];
         let between = self.own.iter().zip(side).filter(|(_, &side)| side == BETWEEN);
         put(between.map(|(&v, _)| v), &mut order[at..self.begin + self.own.len()]);
-        parts
+        Ok(parts)
     }
 }
 
@@ -71,13 +72,23 @@ fn put(nodes: impl Iterator<Item = u32>, order: &mut [usize]) {
 
 /// Whether no part is empty or nearly the whole graph.
 fn divides(found: &Separator) -> bool {
-    let [a, b, between] = found.weight.map(i64::from);
-    a.min(b) > 0 && 20 * a.max(b) <= 19 * (a + b + between)
+    let [a, b, between] = found.weight;
+    a.min(b) > 0.0 && a.max(b) <= SHRINKS * (a + b + between)
+}
+
+/// The graph with all weights 1.
+fn alike(ptr: &[i32], adj: &[i32]) -> Result<Weighted> {
+    let mut graph = Weighted::with_room(ptr.len() - 1, adj.len())?;
+    graph.ptr.extend(ptr[1..].iter().map(|&end| end as usize));
+    graph.adj.extend(adj.iter().map(|&u| u as u32));
+    graph.edge.resize(adj.len(), 1);
+    graph.weight.resize(ptr.len() - 1, 1.0);
+    Ok(graph)
 }
 
 fn signed(graph: &Weighted) -> (Vec<i32>, Vec<i32>) {
-    let signed = |values: &[u32]| values.iter().map(|&value| value as i32).collect();
-    (signed(&graph.ptr), signed(&graph.adj))
+    let ptr = graph.ptr.iter().map(|&end| end as i32).collect();
+    (ptr, graph.adj.iter().map(|&u| u as i32).collect())
 }
 
 #[cfg(test)]
@@ -104,20 +115,20 @@ mod tests {
     /// By hand: the separator of a box is at least the number of nodes of a plane.
     #[test]
     fn separators_of_boxes_are_planes() {
-        for (size, plane) in [([20, 20, 20], 400), ([60, 11, 11], 121), ([50, 50, 2], 100)] {
+        for (size, plane) in [([20, 20, 20], 400.0), ([60, 11, 11], 121.0), ([50, 50, 2], 100.0)] {
             let (ptr, adj) = grid(size);
-            let found = multilevel::separator(&Weighted::of(&ptr, &adj)).unwrap();
+            let found = multilevel::separator(&alike(&ptr, &adj).unwrap()).unwrap().unwrap();
             let [a, b, between] = found.weight;
-            assert!(between == plane && 5 * (a - b).abs() <= a + b, "{size:?}: {:?}", found.weight);
+            assert!(between == plane && 5.0 * (a - b).abs() <= a + b, "{size:?}: {:?}", found.weight);
         }
     }
 
     #[test]
     fn nothing_on_one_side_has_a_neighbour_on_the_other() {
         let (ptr, adj) = grid([17, 13, 12]);
-        let graph = Weighted::of(&ptr, &adj);
-        let side = multilevel::separator(&graph).unwrap().side;
-        let crosses = |v: usize| graph.around(v).any(|u| side[u] + side[v] == 1);
+        let graph = alike(&ptr, &adj).unwrap();
+        let side = multilevel::separator(&graph).unwrap().unwrap().side;
+        let crosses = |v: usize| graph.neighbours(v).any(|u| side[u] + side[v] == 1);
         assert!(!(0..graph.count()).any(crosses));
     }
 

@@ -1,9 +1,10 @@
 //! A small separator of a graph, found on successively coarser graphs (Karypis-Kumar (METIS)).
 
-use super::bisection::Bisection;
-use super::coarsening::{levels, Level};
-use super::separator::{Separator, BETWEEN};
-use super::weighted::Weighted;
+use super::separator::Separator;
+use crate::error::Result;
+use crate::linalg::partition::bisection::{bisected, Target};
+use crate::linalg::partition::levels::{coarsest, levels, refined, Level};
+use crate::linalg::partition::Weighted;
 use crate::linalg::random::Random;
 use crate::numbers::linalg::HEAVIEST;
 
@@ -13,42 +14,46 @@ const COARSEST: (usize, usize) = (40, 100);
 const TRIALS: usize = 5;
 const TRIALS_OF_FEW: usize = 3;
 const FEW: usize = 2000;
+/// A bisection ends after this number of moves without a better cut: the separator is improved later.
+const PATIENCE: usize = 25;
 /// Larger graphs are first coarsened to an eighth; from there several runs with different pairs are tried.
 const LARGE: usize = 3000;
 const RUNS: usize = 4;
 
 /// The best separator found; it depends only on the graph.
-pub fn separator(graph: &Weighted) -> Option<Separator> {
+pub fn separator(graph: &Weighted) -> Result<Option<Separator>> {
     let random = &mut Random::default();
     if graph.count() < LARGE {
-        return from_the_coarsest(graph, random);
+        return from_the_coarsest(graph, random).map(Some);
     }
-    let levels = levels(graph, graph.count() / 8, heaviest(graph), random);
-    let coarse = levels.last().map_or(graph, |level| &level.graph);
-    let found = (0..RUNS).filter_map(|_| from_the_coarsest(coarse, random));
-    Some(refined(graph, &levels, found.min_by(|a, b| a.cost().total_cmp(&b.cost()))?))
+    let levels = levels(graph, graph.count() / 8, heaviest(graph), Some(random))?;
+    let coarse = coarsest(graph, &levels);
+    let mut best = from_the_coarsest(coarse, random)?;
+    for _ in 1..RUNS {
+        let found = from_the_coarsest(coarse, random)?;
+        if found.cost() < best.cost() {
+            best = found;
+        }
+    }
+    finer(graph, &levels, best).map(Some)
 }
 
 /// Limit of the node weights: a coarse graph with much heavier nodes has no good halves.
-fn heaviest(graph: &Weighted) -> i32 {
-    (HEAVIEST * f64::from(graph.total()) / COARSEST.1 as f64).ceil() as i32
+fn heaviest(graph: &Weighted) -> f64 {
+    HEAVIEST * graph.total() / COARSEST.1 as f64
 }
 
-fn from_the_coarsest(graph: &Weighted, random: &mut Random) -> Option<Separator> {
+fn from_the_coarsest(graph: &Weighted, random: &mut Random) -> Result<Separator> {
     let few = (graph.count() / 8).clamp(COARSEST.0, COARSEST.1);
-    let levels = levels(graph, few, heaviest(graph), random);
-    let coarse = levels.last().map_or(graph, |level| &level.graph);
+    let levels = levels(graph, few, heaviest(graph), Some(random))?;
+    let coarse = coarsest(graph, &levels);
     let trials = if graph.count() < FEW { TRIALS_OF_FEW } else { TRIALS };
-    let most = Separator::most(coarse);
-    let found = (0..trials).map(|_| Bisection::grown(coarse, most, random)).min_by_key(|found| found.cut)?;
-    let coarsest = Separator::new(coarse, found.with_separator(BETWEEN)).improved(coarse);
-    Some(refined(graph, &levels, coarsest))
+    let goal = coarse.total() / 2.0;
+    let target = Target { goal, slack: Separator::most(coarse) - goal, patience: PATIENCE };
+    finer(graph, &levels, Separator::between(coarse, bisected(coarse, target, trials)?).improved(coarse))
 }
 
 /// Projects the separator from the coarsest level to the graph and improves it on each level.
-fn refined(graph: &Weighted, levels: &[Level], coarsest: Separator) -> Separator {
-    let finer = |k: usize| if k == 0 { graph } else { &levels[k - 1].graph };
-    (0..levels.len())
-        .rev()
-        .fold(coarsest, |found, k| found.on_finer(finer(k), &levels[k].node).improved(finer(k)))
+fn finer(graph: &Weighted, levels: &[Level], coarsest: Separator) -> Result<Separator> {
+    refined(graph, levels, coarsest, |graph, side| Ok(Separator::new(graph, side).improved(graph)))
 }

@@ -6,9 +6,8 @@
 
 use std::collections::BinaryHeap;
 
+use crate::linalg::partition::Weighted;
 use crate::numbers::linalg::IMBALANCE;
-
-use super::weighted::Weighted;
 
 /// The label of a node of the separator.
 pub const BETWEEN: u8 = 2;
@@ -18,31 +17,43 @@ pub struct Separator {
     /// 0, 1 or `BETWEEN` for every node.
     pub side: Vec<u8>,
     /// Weights of both sides and of the separator.
-    pub weight: [i32; 3],
+    pub weight: [f64; 3],
 }
 
 impl Separator {
     pub fn new(graph: &Weighted, side: Vec<u8>) -> Self {
-        let mut weight = [0; 3];
-        side.iter().zip(&graph.node).for_each(|(&side, node)| weight[side as usize] += node);
+        let mut weight = [0.0; 3];
+        side.iter().zip(&graph.weight).for_each(|(&side, node)| weight[side as usize] += node);
         Self { side, weight }
     }
 
     /// Smaller is better: the weight of the separator, slightly increased by the difference of the sides.
     pub fn cost(&self) -> f64 {
-        let [a, b, between] = self.weight.map(f64::from);
+        let [a, b, between] = self.weight;
         let difference = (a - b) / (a + b + 1.0);
         between * (1.0 + difference * difference)
     }
 
-    /// The separator on a finer graph.
-    pub fn on_finer(&self, finer: &Weighted, coarse: &[u32]) -> Self {
-        Self::new(finer, coarse.iter().map(|&v| self.side[v as usize]).collect())
+    /// The lighter of the two rows of nodes along the cut between the sides 0 and 1.
+    pub fn between(graph: &Weighted, mut side: Vec<u8>) -> Self {
+        let halves = Self::new(graph, side.clone()).weight;
+        let is_at_the_cut = |&v: &usize| graph.neighbours(v).any(|u| side[u] != side[v]);
+        let row: Vec<usize> = (0..graph.count()).filter(is_at_the_cut).collect();
+        let mut weight = [0.0; 2];
+        row.iter().for_each(|&v| weight[side[v] as usize] += graph.weight[v]);
+        // of equal rows that on the heavier side
+        let chosen = u8::from((weight[1], halves[0]) < (weight[0], halves[1]));
+        for v in row {
+            if side[v] == chosen {
+                side[v] = BETWEEN;
+            }
+        }
+        Self::new(graph, side)
     }
 
     /// Limit of the weight of a side of `graph`.
-    pub fn most(graph: &Weighted) -> i32 {
-        (IMBALANCE * f64::from(graph.total()) / 2.0).ceil() as i32
+    pub fn most(graph: &Weighted) -> f64 {
+        (IMBALANCE * graph.total() / 2.0).ceil()
     }
 
     /// Sweeps alternately to either side, until none improves the separator.
@@ -52,7 +63,7 @@ impl Separator {
             most: Self::most(graph),
             graph,
             between,
-            beyond: vec![0; graph.count()],
+            beyond: vec![0.0; graph.count()],
             moved: vec![false; graph.count()],
             queue: BinaryHeap::new(),
             moves: Vec::new(),
@@ -74,12 +85,12 @@ impl Separator {
 
 struct Sweeps<'a> {
     graph: &'a Weighted,
-    most: i32,
+    most: f64,
     found: Separator,
     /// Nodes of the separator.
     between: Vec<u32>,
     /// For each node of the separator, the weight of its neighbours on the side that retreats.
-    beyond: Vec<i32>,
+    beyond: Vec<f64>,
     moved: Vec<bool>,
     /// Nodes of the separator by its reduction when they leave it; outdated entries are skipped.
     queue: BinaryHeap<(i32, u32)>,
@@ -103,7 +114,7 @@ impl Sweeps<'_> {
         let (mut best, mut kept) = (before, 0);
         while self.moves.len() <= kept + layer {
             let Some(v) = self.next() else { break };
-            if self.found.weight[to] + self.graph.node[v] > self.most {
+            if self.found.weight[to] + self.graph.weight[v] > self.most {
                 break;
             }
             self.advance(v, to);
@@ -122,9 +133,9 @@ impl Sweeps<'_> {
     }
 
     /// Smaller is better.
-    fn quality(&self) -> (i32, f64) {
+    fn quality(&self) -> (f64, f64) {
         let [a, b, _] = self.found.weight;
-        ((a.max(b) - self.most).max(0), self.found.cost())
+        ((a.max(b) - self.most).max(0.0), self.found.cost())
     }
 
     fn next(&mut self) -> Option<usize> {
@@ -137,9 +148,9 @@ impl Sweeps<'_> {
         None
     }
 
-    /// Reduction of the separator if a node leaves it.
+    /// Reduction of the separator if a node leaves it, a whole number like the weights of all nodes.
     fn gain(&self, v: usize) -> i32 {
-        self.graph.node[v].wrapping_sub(self.beyond[v])
+        (self.graph.weight[v] - self.beyond[v]) as i32
     }
 
     fn enqueue(&mut self, v: usize) {
@@ -151,8 +162,8 @@ impl Sweeps<'_> {
     /// Recomputes `beyond` of a node of the separator.
     fn measure(&mut self, v: usize, to: usize) {
         let (graph, retreating) = (self.graph, 1 - to as u8);
-        let neighbours = graph.around(v).filter(|&u| self.found.side[u] == retreating);
-        self.beyond[v] = neighbours.map(|u| graph.node[u]).sum();
+        let neighbours = graph.neighbours(v).filter(|&u| self.found.side[u] == retreating);
+        self.beyond[v] = neighbours.map(|u| graph.weight[u]).sum();
         self.enqueue(v);
     }
 
@@ -162,20 +173,20 @@ impl Sweeps<'_> {
         let begin = self.joined.len();
         self.moves.push((v as u32, begin));
         self.moved[v] = true;
-        self.found.give(graph.node[v], BETWEEN as usize, to);
+        self.found.give(graph.weight[v], BETWEEN as usize, to);
         self.found.side[v] = to as u8;
-        for u in graph.around(v) {
+        for u in graph.neighbours(v) {
             if self.found.side[u] as usize == retreating {
                 self.found.side[u] = BETWEEN;
-                self.found.give(graph.node[u], retreating, BETWEEN as usize);
+                self.found.give(graph.weight[u], retreating, BETWEEN as usize);
                 self.joined.push(u as u32);
             }
         }
         for k in begin..self.joined.len() {
             let u = self.joined[k] as usize;
-            for w in graph.around(u) {
+            for w in graph.neighbours(u) {
                 if self.found.side[w] == BETWEEN {
-                    self.beyond[w] = self.beyond[w].wrapping_sub(graph.node[u]);
+                    self.beyond[w] -= graph.weight[u];
                     self.enqueue(w);
                 }
             }
@@ -191,18 +202,24 @@ impl Sweeps<'_> {
         let graph = self.graph;
         for (v, begin) in self.moves.drain(kept..).rev() {
             self.found.side[v as usize] = BETWEEN;
-            self.found.give(graph.node[v as usize], to, BETWEEN as usize);
+            self.found.give(graph.weight[v as usize], to, BETWEEN as usize);
             for u in self.joined.drain(begin..) {
                 self.found.side[u as usize] = 1 - to as u8;
-                self.found.give(graph.node[u as usize], BETWEEN as usize, 1 - to);
+                self.found.give(graph.weight[u as usize], BETWEEN as usize, 1 - to);
             }
         }
     }
 }
 
 impl Separator {
-    fn give(&mut self, weight: i32, from: usize, to: usize) {
+    fn give(&mut self, weight: f64, from: usize, to: usize) {
         self.weight[from] -= weight;
         self.weight[to] += weight;
+    }
+}
+
+impl AsRef<[u8]> for Separator {
+    fn as_ref(&self) -> &[u8] {
+        &self.side
     }
 }
