@@ -144,7 +144,7 @@ demo: setup
 	@tools/demo.sh build/demo build/data build/pictures
 
 # ---- tests
-# Without the three claims that take as long as all others.
+# Without the three slowest claims, which take a third of the time of all.
 quick:
 	$(CARGO) test --profile quick --locked -p feti-contact --no-fail-fast --lib --test claims --test documents -- \
 	    --skip pilots::elastic --skip reuse::rows --skip random_problems_in_one_matrix
@@ -176,13 +176,13 @@ test:
 	cmake --build build/ctest -j 2
 	ctest --test-dir build/ctest --output-on-failure -j 2
 
-# With the order of elimination by METIS 5, the library of the system.
 # One driver of tests/abi, after a first `make test`, which installs what CMake looks for.
 driver: stage data
 	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data > /dev/null
 	cmake --build build/ctest --target $(NAME)
 	$$(find build/ctest -type f -name $(NAME)) build/data
 
+# With the order of elimination by METIS 5, the library of the system.
 metis:
 	@tools/setup.sh libmetis-dev
 	$(CARGO) test --release --locked --features metis --lib linalg
