@@ -19,11 +19,11 @@ LINES = re.compile(r"(\d+)-(\d+)$")
 
 
 class Page(HTMLParser):
-    """Links, as (line, target), and anchors of an HTML page."""
+    """Links, as (line, target), and anchors of an HTML page; where it forwards to, if it does."""
 
     def __init__(self, text):
         super().__init__()
-        self.links, self.anchors = [], set()
+        self.links, self.anchors, self.forward = [], set(), None
         self.feed(text)
 
     def handle_starttag(self, tag, attributes):
@@ -32,6 +32,8 @@ class Page(HTMLParser):
         # What is no link: a base, and scripts that a page can do without (rustdoc names some that it does not write).
         if tag == "base" or tag == "script" and "async" in given:
             return
+        if tag == "meta" and given.get("http-equiv") == "refresh":
+            self.forward = given["content"].partition("=")[2]
         self.links += [(self.getpos()[0], given[key]) for key in ("href", "src", "data") if given.get(key)]
 
 
@@ -39,7 +41,7 @@ class Text:
     """The same of a Markdown file."""
 
     def __init__(self, text):
-        self.links, self.anchors = markdown.links(text), markdown.anchors(text)
+        self.links, self.anchors, self.forward = markdown.links(text), markdown.anchors(text), None
 
 
 @functools.lru_cache(maxsize=None)
@@ -51,8 +53,12 @@ KINDS = {".html": Page, ".md": Text}
 
 
 def has_anchor(path, anchor):
-    """Also `12-30`, lines of a source, where both are anchors."""
-    known = read(path).anchors
+    """Also `12-30`, lines of a source, where both are anchors; an anchor of a page that forwards is one of its target."""
+    page = read(path)
+    if page.forward:
+        path = (path.parent / unquote(page.forward)).resolve()
+        return path.is_file() and has_anchor(path, anchor)
+    known = page.anchors
     lines = LINES.match(anchor)
     return anchor in known or unquote(anchor) in known or bool(lines and known.issuperset(lines.groups()))
 
