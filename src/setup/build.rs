@@ -30,7 +30,8 @@ impl Prepared {
             .is_some_and(|duals| duals.islands.iter().all(suits) && duals.operators.suit(&model.settings))
     }
 
-    /// Makes null spaces, factors and dual operators that are missing or out of date.
+    /// Makes null spaces, factors and dual operators that are missing or out of date, for a model that has all of its input
+    /// (`check_complete`).
     pub fn set_up(&mut self, model: &SolvedModel, watch: &mut Watch) -> Result<()> {
         let begun = Instant::now();
         self.follow(model);
