@@ -8,6 +8,7 @@ mod scales;
 mod soft;
 
 mod support {
+    pub mod asked;
     pub mod face;
     pub mod hand_over;
     pub mod rungs;

@@ -9,10 +9,10 @@ use decks::{second, Deck};
 use feti_contact::error::{Error, Kind, Proof, Result};
 use feti_contact::solver::{Outcome, Problem, Report};
 
+use crate::battery::seeds;
 use crate::battery::varied::{answer, CONDITION};
-use crate::battery::{is_second_mixture, seeds};
-use crate::support::hand_over;
 use crate::support::rungs::{self, Ended};
+use crate::support::{asked, hand_over};
 
 /// Of the cases with an answer this part may end otherwise: up to that condition, and beyond it.
 const UNSOLVED: f64 = 1e-4;
@@ -48,7 +48,7 @@ pub struct End {
 }
 
 pub fn mixture() -> &'static hard::Mixture {
-    if is_second_mixture() {
+    if asked::is_second_mixture() {
         &SECOND_MIXTURE
     } else {
         &MIXTURE
@@ -317,8 +317,7 @@ fn one_hard_problem_in_full() {
 #[test]
 #[ignore]
 fn what_each_second_try_saves() {
-    let kind = if is_second_mixture() { "hard 2" } else { "hard" };
-    rungs::print(kind, seeds(), |seed, without| {
+    rungs::print(&asked::with_mixture("hard"), seeds(), |seed, without| {
         let case = hard::mixed(seed, mixture());
         let (End { verdict, .. }, report) = end_without(&case, without);
         let wrong = matches!(verdict, Verdict::Wrong | Verdict::Refused | Verdict::FalseProof);

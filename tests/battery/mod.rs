@@ -13,7 +13,7 @@ mod second;
 mod small;
 mod varied;
 
-use crate::support::hand_over;
+use crate::support::{asked, hand_over};
 use std::fmt::Write;
 
 use decks::battery::{self, Case};
@@ -21,14 +21,11 @@ use decks::varied::{Mixture, MIXTURE, SECOND_MIXTURE};
 use feti_contact::error::{Kind, Result};
 use feti_contact::solver::{Outcome, Report};
 
-/// Number of problems of the ordinary run, and the seed of the first; the variables BATTERY and BATTERY_SEED ask for others.
+/// Number of problems of the ordinary run.
 const PROBLEMS: u64 = 1000;
-const FIRST: u64 = 0;
 
 fn seeds() -> std::ops::Range<u64> {
-    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
-    let first = asked("BATTERY_SEED").unwrap_or(FIRST);
-    first..first + asked("BATTERY").unwrap_or(PROBLEMS)
+    asked::seeds(PROBLEMS)
 }
 
 /// The first of them, one for `share` of all.
@@ -37,13 +34,8 @@ fn some_seeds(share: u64) -> std::ops::Range<u64> {
     all.start..all.start + (all.end - all.start).div_ceil(share)
 }
 
-/// Varied problems are drawn from the second mixture where BATTERY_MIXTURE is 2.
-fn is_second_mixture() -> bool {
-    std::env::var("BATTERY_MIXTURE").is_ok_and(|text| text == "2")
-}
-
 fn mixture() -> &'static Mixture {
-    if is_second_mixture() {
+    if asked::is_second_mixture() {
         &SECOND_MIXTURE
     } else {
         &MIXTURE

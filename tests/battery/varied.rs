@@ -8,9 +8,9 @@ use decks::varied::{self, Varied, MIXTURE, SECOND_MIXTURE};
 use decks::yardstick::{Answer, Yardstick};
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 
-use crate::battery::{is_second_mixture, mixture, seeds, some_seeds};
-use crate::support::hand_over;
+use crate::battery::{mixture, seeds, some_seeds};
 use crate::support::rungs::{self, Ended};
+use crate::support::{asked, hand_over};
 
 /// Number of problems of the ordinary run, one for this many of the others.
 const SHARE: u64 = 2;
@@ -158,8 +158,7 @@ fn every_varied_problem_that_is_solved_is_solved_rightly() {
 #[test]
 #[ignore]
 fn what_each_second_try_saves() {
-    let kind = if is_second_mixture() { "varied 2" } else { "varied" };
-    rungs::print(kind, seeds(), |seed, without| {
+    rungs::print(&asked::with_mixture("varied"), seeds(), |seed, without| {
         let case = varied::mixed(seed, mixture());
         let (End { error, .. }, report) = end_without(&case, without);
         let wrong = error.is_some_and(|(error, _)| error > 1.0);

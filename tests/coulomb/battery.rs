@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::ops::Range;
 
 use feti_contact::error::{Error, Kind, Proof};
 use feti_contact::solver::{FrictionState, Outcome, Problem, Report, RowKind};
@@ -10,13 +9,12 @@ use feti_contact::solver::{FrictionState, Outcome, Problem, Report, RowKind};
 use crate::coulomb::drawn::{case, Drawn, Known, Sizes, OTHER_SIZES, SIZES};
 use crate::coulomb::enumeration::{self, Enumerated};
 use crate::coulomb::judge::{self, Answer};
+use crate::support::asked::{is_second_mixture, seeds, with_mixture};
 use crate::support::hand_over;
 use crate::support::rungs::{self, Ended};
 
-/// Number of problems of the ordinary run and the seed of the first; the variables BATTERY, BATTERY_SEED and BATTERY_MIXTURE = 2,
-/// larger problems, ask for others.
+/// Number of problems of the ordinary run.
 const PROBLEMS: u64 = 1500;
-const FIRST: u64 = 0;
 /// An answer whose worst error is beyond this part of what is there is wrong: a thousand times what the certificate allows, which
 /// has lengths of single unknowns where the judge has norms of bodies.
 pub const RIGHT: f64 = 1e-5;
@@ -27,18 +25,9 @@ const CAPACITY: f64 = 0.1;
 /// This part of those that have an answer may be left unsolved.
 const UNSOLVED: f64 = 0.01;
 
-fn asked(name: &str) -> Option<u64> {
-    std::env::var(name).ok().and_then(|text| text.parse().ok())
-}
-
-/// The seeds of a run: BATTERY problems from BATTERY_SEED on; otherwise so many from 0 on.
-pub fn seeds(problems: u64) -> Range<u64> {
-    let first = asked("BATTERY_SEED").unwrap_or(FIRST);
-    first..first + asked("BATTERY").unwrap_or(problems)
-}
-
+/// The second mixture has larger problems.
 pub fn sizes() -> &'static Sizes {
-    if asked("BATTERY_MIXTURE") == Some(2) {
+    if is_second_mixture() {
         &OTHER_SIZES
     } else {
         &SIZES
@@ -275,7 +264,7 @@ fn loads_that_cancel_along_a_free_motion_leave_many_answers() {
 #[test]
 #[ignore]
 fn one_problem_in_full() {
-    let seed = asked("BATTERY_SEED").unwrap_or(FIRST);
+    let seed = seeds(1).start;
     let drawn = case(seed, sizes());
     println!("{seed} {} {:?}", drawn.class, drawn.known);
     for rows in [&drawn.deck.contact, &drawn.deck.friction.rows, &drawn.deck.equalities] {
@@ -309,8 +298,7 @@ fn one_problem_in_full() {
 #[test]
 #[ignore]
 fn what_each_second_try_saves() {
-    let kind = if asked("BATTERY_MIXTURE") == Some(2) { "friction 2" } else { "friction" };
-    rungs::print(kind, seeds(PROBLEMS), |seed, without| {
+    rungs::print(&with_mixture("friction"), seeds(PROBLEMS), |seed, without| {
         let (end, _, report) = ended_without(&case(seed, sizes()), without);
         Some(Ended { solved: end != End::Unsolved, wrong: end == End::Wrong, report })
     });

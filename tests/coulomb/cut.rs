@@ -4,10 +4,11 @@ use decks::{Deck, Rows};
 use feti_contact::error::{Kind, Result};
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::coulomb::battery::{answer, seeds, sizes, RIGHT};
+use crate::coulomb::battery::{answer, sizes, RIGHT};
 use crate::coulomb::drawn::{case, Drawn};
 use crate::coulomb::idle::give;
 use crate::coulomb::judge;
+use crate::support::asked::seeds;
 use crate::support::hand_over;
 
 /// Number of problems of the ordinary run.

@@ -8,8 +8,9 @@ use decks::{Block, Body, Csr, Deck, Friction};
 use feti_contact::error::{Error, Kind, Proof};
 use feti_contact::solver::{FrictionState, Modes, Outcome, Problem};
 
-use crate::coulomb::battery::{answer, seeds};
+use crate::coulomb::battery::answer;
 use crate::coulomb::judge;
+use crate::support::asked::seeds;
 use crate::support::hand_over;
 use crate::support::rungs::{self, Ended};
 

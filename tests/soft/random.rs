@@ -7,9 +7,10 @@ use feti_contact::error::{Error, Kind, Proof};
 use feti_contact::solver::{Modes, Outcome, Report, RowKind};
 
 use crate::soft::{add_diagonal, difference, given};
+use crate::support::asked::seeds;
 use crate::support::rungs::{self, Ended};
 
-/// Problems of the ordinary run; the variable BATTERY asks for more, BATTERY_SEED for others.
+/// Problems of the ordinary run.
 const PROBLEMS: u64 = 200;
 /// Signs, rows and singular conditions are known to this.
 const NOISE: f64 = 1e-9;
@@ -291,16 +292,10 @@ fn end_without(deck: &Deck, without: i64) -> (End, String, Option<Report>) {
     (end, what, report)
 }
 
-fn seeds() -> std::ops::Range<u64> {
-    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
-    let first: u64 = asked("BATTERY_SEED").unwrap_or(0);
-    first..first + asked("BATTERY").unwrap_or(PROBLEMS)
-}
-
 #[test]
 fn random_driven_problems_end_as_all_their_stationary_points_say() {
     let (mut counts, mut lines) = (std::collections::BTreeMap::<End, usize>::new(), Vec::new());
-    for seed in seeds() {
+    for seed in seeds(PROBLEMS) {
         let Some((deck, rho)) = case(seed) else {
             *counts.entry(End::None).or_default() += 1;
             continue;
@@ -326,7 +321,7 @@ fn random_driven_problems_end_as_all_their_stationary_points_say() {
 #[test]
 #[ignore]
 fn what_each_second_try_saves() {
-    rungs::print("driven", seeds(), |seed, without| {
+    rungs::print("driven", seeds(PROBLEMS), |seed, without| {
         let (deck, _) = case(seed).filter(|(_, rho)| (rho - 1.0).abs() >= CRITICAL)?;
         let (end, _, report) = end_without(&deck, without);
         Some(Ended { solved: !matches!(end, End::Unsolved | End::Open), wrong: end == End::Wrong, report })

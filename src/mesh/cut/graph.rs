@@ -59,8 +59,8 @@ fn enlarge(list: &mut Vec<u32>, more: usize) -> Result<()> {
     list.try_reserve_exact(list.len() / 2 + more + 1024).map_err(|_| refusal(bytes, WHAT))
 }
 
-/// Weights whose sums over the pieces shall be equal: the number of unknowns of an element, divided by the largest number of elements at one of its nodes: equal elements
-/// have equal weights, at the surface of the body as inside.
+/// Weights whose sums over the pieces shall be equal: the number of unknowns of an element, divided by the largest number of
+/// elements at one of its nodes. Equal elements have equal weights, at the surface of the body as inside.
 fn weights(incidence: &Incidence) -> Result<Vec<f64>> {
     let mut weights = reserved(incidence.count(), WHAT)?;
     for e in 0..incidence.count() {

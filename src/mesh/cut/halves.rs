@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::linalg::partition::bisection::{bisected, improved, Target};
-use crate::linalg::partition::levels::{coarsest, levels, refined};
+use crate::linalg::partition::levels::{coarsest, levels, refined, Level};
 use crate::linalg::partition::Weighted;
 use crate::numbers::cut::{SLACK, SLACK_BY_ELEMENT};
 use crate::numbers::linalg::HEAVIEST;
@@ -17,10 +17,15 @@ const PATIENCE: usize = 100;
 
 /// For each vertex 0 or 1: part 0 has about `fraction` of the weight.
 pub fn halves(graph: &Weighted, fraction: f64) -> Result<Vec<u8>> {
-    let levels = levels(graph, SMALL, HEAVIEST * graph.total() / SMALL as f64, None)?;
+    let levels = coarser(graph, SMALL)?;
     let coarse = coarsest(graph, &levels);
     let first = bisected(coarse, target(coarse, fraction), TRIALS)?;
     refined(graph, &levels, first, |graph, side| improved(graph, target(graph, fraction), side))
+}
+
+/// Coarser graphs, down to about `few` vertices, none much heavier than others.
+pub fn coarser(graph: &Weighted, few: usize) -> Result<Vec<Level>> {
+    levels(graph, few, HEAVIEST * graph.total() / few as f64, None)
 }
 
 fn target(graph: &Weighted, fraction: f64) -> Target {

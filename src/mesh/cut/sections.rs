@@ -1,15 +1,14 @@
 //! The cut by planes: a set of elements is cut into slabs, and each slab again, until every set is a piece.
 
 use super::directions::{dot, of_mesh, Choice, Frame, Point, Set};
-use super::halves::halves;
+use super::halves::{coarser, halves};
 use super::incidence::{NONE, WHAT};
 use super::scraps::give;
 use super::smooth::smooth;
 use crate::error::Result;
-use crate::linalg::partition::levels::{coarsest, levels, refined};
+use crate::linalg::partition::levels::{coarsest, refined};
 use crate::linalg::partition::Weighted;
 use crate::numbers::cut::{DISCONNECTED, LONG, SNAP, TIE};
-use crate::numbers::linalg::HEAVIEST;
 use crate::platform::interrupt;
 use crate::platform::memory::{copied, filled, reserved};
 
@@ -73,7 +72,7 @@ pub fn sections(
 /// with which it shares most.
 pub fn by_levels(graph: &Weighted, piece: &mut [u32], shares: &[usize]) -> Result<()> {
     let enough = (GROUPS * shares.iter().sum::<usize>()).max(2000);
-    let levels = levels(graph, enough, HEAVIEST * graph.total() / enough as f64, None)?;
+    let levels = coarser(graph, enough)?;
     // a group lies in one part, since it was formed across faces
     let mut label = copied(piece, WHAT)?;
     for level in &levels {

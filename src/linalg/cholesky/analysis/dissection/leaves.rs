@@ -1,8 +1,9 @@
 //! The order of a few nodes by minimum degree, which also counts neighbours that are eliminated later.
 
+use crate::linalg::partition::NONE;
+
 /// Limit of outside neighbours that are counted.
 const OUTSIDE: usize = 1024;
-const NONE: u32 = u32::MAX;
 
 /// The elimination graph of a few nodes: for each node a row of bits, one per neighbour, with outside neighbours after
 /// all nodes.

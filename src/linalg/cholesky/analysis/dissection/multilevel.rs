@@ -21,10 +21,10 @@ const LARGE: usize = 3000;
 const RUNS: usize = 4;
 
 /// The best separator found; it depends only on the graph.
-pub fn separator(graph: &Weighted) -> Result<Option<Separator>> {
+pub fn separator(graph: &Weighted) -> Result<Separator> {
     let random = &mut Random::default();
     if graph.count() < LARGE {
-        return from_the_coarsest(graph, random).map(Some);
+        return from_the_coarsest(graph, random);
     }
     let levels = levels(graph, graph.count() / 8, heaviest(graph), Some(random))?;
     let coarse = coarsest(graph, &levels);
@@ -35,7 +35,7 @@ pub fn separator(graph: &Weighted) -> Result<Option<Separator>> {
             best = found;
         }
     }
-    finer(graph, &levels, best).map(Some)
+    finer(graph, &levels, best)
 }
 
 /// Limit of the node weights: a coarse graph with much heavier nodes has no good halves.
