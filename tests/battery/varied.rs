@@ -154,6 +154,30 @@ fn every_varied_problem_that_is_solved_is_solved_rightly() {
     assert!(wrong.is_empty() && unsolved.len() <= allowed, "{table}{lines}");
 }
 
+/// `VARIED=17 cargo test --release --test batteries one_varied -- --ignored --nocapture`.
+#[test]
+#[ignore]
+fn one_varied_problem_in_full() {
+    let seed = std::env::var("VARIED").ok().and_then(|text| text.parse().ok()).unwrap_or(0);
+    let case = varied::mixed(seed, mixture());
+    println!("{case:#?}");
+    let mut problem = hand_over::problem(&case.deck).unwrap();
+    println!("{:#?}", problem.solve());
+    let found = answer(&problem);
+    println!("found {found:?}");
+    let drawn = Answer {
+        u: case.displacement.clone(),
+        lambda: case.forces.clone(),
+        mu: case.equality_forces.clone(),
+    };
+    let others = [second::solve, second::solve_to_the_letter].map(|solve| solve(&case.deck));
+    for truth in [Some(drawn)].into_iter().chain(others).flatten() {
+        let yardstick = Yardstick::new(&case.deck, &truth, case.undetermined > 0);
+        println!("by {truth:?}\n{:?}\n{:?}", yardstick.ratios(&found), yardstick.sizes);
+    }
+    println!("findings {:#?}", problem.findings());
+}
+
 /// `make rungs`.
 #[test]
 #[ignore]
