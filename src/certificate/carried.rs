@@ -10,17 +10,20 @@
 
 use std::rc::Rc;
 
+use crate::body::Stiffness;
 use crate::certificate::clusters::{Clusters, Metered};
-use crate::constraints::RowSet;
+use crate::constraints::{RowSet, Touched};
 use crate::error::Result;
+use crate::linalg::by_body::Ranges;
 use crate::linalg::graph::joined;
-use crate::linalg::vector::{norm_max, NOISE};
+use crate::linalg::vector::NOISE;
+use crate::linalg::ByBody;
 use crate::numbers::certificate::CARRIED;
-use crate::platform::memory::{filled, zeros};
+use crate::platform::memory::{filled, reserved, zeros};
 
 const WHAT: &str = "the metric of an island";
 
-/// `D~ / unit` over all unknowns.
+/// `D~ / unit` at the unknowns that rows touch.
 pub struct Metric {
     pub values: Vec<f64>,
     /// Carried unknowns, ascending.
@@ -32,24 +35,46 @@ impl Metric {
     /// infinite gap holds nothing.
     pub fn of(
         bodies: &[Metered],
+        touched: &Touched,
         rows: [&RowSet; 3],
         holds: &dyn Fn(usize, usize) -> bool,
         unit: f64,
     ) -> Result<Self> {
-        Search::new(bodies, rows, holds, unit)?.metric()
+        Search::new(bodies, touched, rows, holds, unit)?.metric()
     }
 }
 
-/// D^ / unit over all unknowns: D~ with what all rows lead to, however few of them hold an unknown and however large its cluster. It
+/// D^ / unit at the unknowns that rows touch: D~ with what all rows lead to, however few of them hold an unknown and however large its cluster. It
 /// measures motions that rows pass on from soft unknowns to stiff ones, and the rounding of forces that cancel between rows. A row
 /// gives no more than the stiffest unknown to which it leads: an entry that is nearly 0 is no lever.
 pub fn led(
     bodies: &[Metered],
+    touched: &Touched,
     rows: [&RowSet; 3],
     holds: &dyn Fn(usize, usize) -> bool,
     unit: f64,
 ) -> Result<Vec<f64>> {
-    Search::new(bodies, rows, holds, unit)?.led()
+    Search::new(bodies, touched, rows, holds, unit)?.led()
+}
+
+/// D / unit of all unknowns, but these values where rows touch.
+pub fn everywhere(
+    bodies: &[Metered],
+    (ranges, touched): (&Ranges, &Touched),
+    values: &[f64],
+    unit: f64,
+) -> ByBody {
+    let own = bodies
+        .iter()
+        .map(|(k, without)| -> Vec<f64> { (0..k.order()).map(|i| k.metric(i, *without) / unit).collect() });
+    let mut all = ByBody::from_each(ranges, own);
+    touched.set(values, &mut all);
+    all
+}
+
+/// The largest D of a body; `without`: that of unknowns without stiffness.
+pub(super) fn stiffest(k: Stiffness, without: f64) -> f64 {
+    (0..k.order()).map(|i| k.metric(i, without)).fold(0.0, f64::max)
 }
 
 /// The search for D~ or D^ from the stiffest unknowns outward.
@@ -60,7 +85,7 @@ pub(super) struct Search<'a> {
     unit: f64,
     /// None if rows hold no unknown far better than K.
     clusters: Option<Rc<Clusters>>,
-    /// D / unit, n.
+    /// D / unit, of n touched unknowns.
     values: Vec<f64>,
     /// D~ / unit as far as it is known, n; 0 without stiffness.
     stiffness: Vec<f64>,
@@ -71,23 +96,22 @@ pub(super) struct Search<'a> {
 impl<'a> Search<'a> {
     pub fn new(
         bodies: &[Metered],
+        touched: &Touched,
         rows: [&'a RowSet; 3],
         holds: &'a dyn Fn(usize, usize) -> bool,
         unit: f64,
     ) -> Result<Self> {
-        let n = bodies.last().map_or(0, |(start, k, _)| start + k.order());
-        let (mut values, mut stiffness) = (zeros(n, WHAT)?, zeros(n, WHAT)?);
-        for (start, k, without) in bodies {
-            for i in 0..k.order() {
-                values[start + i] = k.metric(i, *without) / unit;
-                stiffness[start + i] = k.metric(i, 0.0) / unit;
-            }
+        let n = touched.len();
+        let (mut values, mut stiffness) = (reserved(n, WHAT)?, reserved(n, WHAT)?);
+        for (p, (k, without)) in bodies.iter().enumerate() {
+            values.extend(touched.dofs(p).map(|dof| k.metric(dof, *without) / unit));
+            stiffness.extend(touched.dofs(p).map(|dof| k.metric(dof, 0.0) / unit));
         }
         let mut held = filled(n + 1, false, WHAT)?;
         held[n] = true;
         let mut search = Self { rows, holds, unit, clusters: None, values, stiffness, held };
-        if search.is_needed() {
-            search.clusters = Some(Rc::new(Clusters::of(bodies, rows, n + 1)?));
+        if search.is_needed(bodies) {
+            search.clusters = Some(Rc::new(Clusters::of(bodies, touched, rows)?));
         }
         Ok(search)
     }
@@ -123,8 +147,8 @@ impl<'a> Search<'a> {
     }
 
     /// Whether rows may hold some unknown far better than K: another unknown, or the ground.
-    fn is_needed(&self) -> bool {
-        let stiffest = norm_max(&self.stiffness);
+    fn is_needed(&self, bodies: &[Metered]) -> bool {
+        let stiffest = bodies.iter().map(|(k, _)| stiffest(*k, 0.0)).fold(0.0, f64::max) / self.unit;
         let mut soft = false;
         self.each_row(self.every_row(), |row, _| {
             soft |= row.len() == 1 && CARRIED * self.stiffness[row[0].0] < stiffest;
@@ -296,9 +320,11 @@ mod tests {
     fn metric(springs: &[f64], of_rows: &[&[(usize, f64)]]) -> Metric {
         let matrices: Vec<Symmetric> =
             springs.iter().map(|&k| Symmetric::new(vec![0, 1], vec![0], vec![k])).collect();
-        let bodies: Vec<Metered> = matrices.iter().enumerate().map(|(p, k)| (p, k.into(), 1.0)).collect();
+        let bodies: Vec<Metered> = matrices.iter().map(|k| (k.into(), 1.0)).collect();
+        let ranges: Vec<_> = (0..springs.len()).map(|p| p..p + 1).collect();
         let (rows, none) = (rows(springs.len(), of_rows), RowSet::default());
-        Metric::of(&bodies, [&rows, &none, &none], &|_, _| true, 1.0).unwrap()
+        Metric::of(&bodies, &Touched::of(&ranges, 0..springs.len()), [&rows, &none, &none], &|_, _| true, 1.0)
+            .unwrap()
     }
 
     #[test]
@@ -348,10 +374,11 @@ mod tests {
         let (stiff, none) = (Symmetric::new(vec![0, 1], vec![0], vec![1.0]), RowSet::default());
         for (n, held, carried) in [(6, 6, true), (6, 5, false), (7, 7, false)] {
             let soft = chain(n);
-            let bodies: Vec<Metered> = vec![(0, (&stiff).into(), 1.0), (1, (&soft).into(), 1.0)];
+            let bodies: Vec<Metered> = vec![((&stiff).into(), 1.0), ((&soft).into(), 1.0)];
+            let touched = Touched::of(&[0..1, 1..1 + n], 0..1 + n);
             let entries: Vec<_> = (1..=held).map(|j| [(0, 1.0), (j, -1.0)]).collect();
             let rows = rows(n + 1, &entries.iter().map(|row| &row[..]).collect::<Vec<_>>());
-            let of = Metric::of(&bodies, [&none, &rows, &none], &|_, _| true, 1.0).unwrap();
+            let of = Metric::of(&bodies, &touched, [&none, &rows, &none], &|_, _| true, 1.0).unwrap();
             assert_eq!(of.carried, if carried { (1..=n).collect() } else { vec![] });
         }
     }

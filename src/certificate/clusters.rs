@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::body::Stiffness;
 use crate::certificate::grounded::each_entry;
-use crate::constraints::RowSet;
+use crate::constraints::{RowSet, Touched};
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::sparse::csr::by_columns;
@@ -16,13 +16,14 @@ use crate::platform::memory::filled;
 const CLUSTER: usize = 6;
 const WHAT: &str = "the metric of an island";
 
-/// A body: its first unknown in the island, its K, and the metric of unknowns without stiffness.
-pub type Metered<'a> = (usize, Stiffness<'a>, f64);
+/// A body: its K, and the metric of unknowns without stiffness.
+pub type Metered<'a> = (Stiffness<'a>, f64);
 
-/// The clusters of all unknowns: those that K couples by more than the springs that hang a pilot on a body; and their rows.
+/// The clusters of the unknowns that rows touch: those that K couples by more than the springs that hang a pilot on a body; and their rows.
 pub(super) struct Clusters {
-    /// Cluster of every unknown.
+    /// Cluster of every touched unknown, then of the ground.
     pub of: Vec<usize>,
+    /// Unknowns of each cluster, also those that no row touches.
     sizes: Vec<usize>,
     /// Stiffness of the ground: of the stiffest connection of two unknowns, `max |K_ij|`, not of a penalty; force / length.
     pub ground: f64,
@@ -32,26 +33,34 @@ pub(super) struct Clusters {
 }
 
 impl Clusters {
-    pub fn of(bodies: &[Metered], rows: [&RowSet; 3], n: usize) -> Result<Self> {
-        let (mut pairs, mut hidden, mut ground) = (Vec::new(), Vec::new(), 0.0f64);
-        for (start, k, _) in bodies {
+    pub fn of(bodies: &[Metered], touched: &Touched, rows: [&RowSet; 3]) -> Result<Self> {
+        let (mut of, mut sizes, mut ground) = (Vec::with_capacity(touched.len() + 1), Vec::new(), 0.0f64);
+        for (p, (k, _)) in bodies.iter().enumerate() {
+            let mut pairs = Vec::new();
             let couple = |i: usize, j: usize, v: f64| {
                 ground = if i == j { ground } else { ground.max(v.abs()) };
                 // as far apart as a pilot and the body on which it hangs: |K_ij| < (K_ii K_jj)^1/2 / CARRIED
                 let [part, of] = [i, j].map(|of| CARRIED * v.abs() / k.metric(of, 0.0));
                 if i != j && v != 0.0 && (part * of).is_nan() | (part * of >= 1.0) {
-                    pairs.push([start + i, start + j]);
+                    pairs.push([i, j]);
                 }
             };
-            if !each_entry(*k, couple) {
-                hidden.extend(*start..start + k.order());
-            }
+            // K+ of a body whose entries the host keeps cannot hold further unknowns
+            let least = if each_entry(*k, couple) { 0 } else { CLUSTER };
+            let (cluster, count) = joined(k.order(), pairs.into_iter().map(|pair| pair.into_iter()));
+            let mut own = filled(count, least, WHAT)?;
+            cluster.iter().for_each(|&cluster| own[cluster] += 1);
+            let mut number = filled(count, None, WHAT)?;
+            of.extend(touched.dofs(p).map(|dof| {
+                *number[cluster[dof]].get_or_insert_with(|| {
+                    sizes.push(own[cluster[dof]]);
+                    sizes.len() - 1
+                })
+            }));
         }
-        let (of, count) = joined(n, pairs.into_iter().map(|pair| pair.into_iter()));
-        let mut sizes = filled(count, 0, WHAT)?;
-        of.iter().for_each(|&cluster| sizes[cluster] += 1);
-        // K+ of a body whose entries the host keeps cannot hold further unknowns
-        hidden.into_iter().for_each(|j| sizes[of[j]] += CLUSTER);
+        of.push(sizes.len());
+        sizes.push(1);
+        let n = of.len();
         let of_row = |kind: usize, i: usize| rows[kind].matrix.row(i).map(move |(j, v)| ((kind, i), j, v));
         let of_set = |kind: usize| (0..rows[kind].len()).flat_map(move |i| of_row(kind, i));
         let (starts, rows, _) = by_columns(n, || (0..rows.len()).flat_map(of_set), WHAT)?;

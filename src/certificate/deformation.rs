@@ -9,7 +9,7 @@ use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, norm, norm_max, ratio};
-use crate::linalg::{Analysis, Csr, Matrix};
+use crate::linalg::{Analysis, ByBody, Csr, Matrix};
 use crate::numbers::certificate::{NEIGHBOURS, RESISTED};
 use crate::platform::interrupt;
 
@@ -18,38 +18,50 @@ const PASSES: usize = 4;
 /// `A b` is rounding if it is below this part of `|A||b|`.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// delta, n, length.
+/// delta, length.
 pub(super) struct Deformation {
     /// Deformation at each unknown.
-    pub own: Vec<f64>,
-    /// Deformation at each unknown including its neighbours.
+    pub own: ByBody,
+    /// The same where rows touch.
+    pub own_at: Vec<f64>,
+    /// Deformation where rows touch, including the neighbours of these unknowns.
     pub joined: Vec<f64>,
 }
 
 impl Deformation {
     pub fn new(field: &Field) -> Result<Self> {
         let own = own(field)?;
-        let joined = with_neighbours(field, &own)?;
-        Ok(Self { own, joined })
+        let own_at = field.data.touched.at(&own);
+        let joined = with_neighbours(field, &own, &own_at)?;
+        Ok(Self { own, own_at, joined })
     }
 }
 
 /// `|r_j| / D~_j` of grounded and carried unknowns, r the forces of the rows; `|u - R a|` of the others. What a carried unknown passes
 /// into the ground by a row of its own deforms nothing.
-fn own(field: &Field) -> Result<Vec<f64>> {
+fn own(field: &Field) -> Result<ByBody> {
     let mut own = without_motions(field)?;
-    let passed_on = passed_on(field);
-    for j in (0..own.len()).filter(|j| field.grounded[*j] || field.carried[*j]) {
-        let push = passed_on.get(&j).unwrap_or(&field.push[j]);
-        own[j] = (push.abs() / field.unit / field.metric[j]).min(field.answer.u[j].abs());
+    let given = |push: f64, metric: f64, u: f64| (push.abs() / field.unit / metric).min(u.abs());
+    for p in 0..field.data.bodies.len() {
+        let (push, metric, u) = (field.push.on(p), field.metric.on(p), field.answer.u.on(p));
+        let own = own.on_mut(p);
+        let grounded = field.dofs(p).filter(|j| field.grounded.on(p)[*j]);
+        grounded.for_each(|j| own[j] = given(push[j], metric[j], u[j]));
     }
+    let (at, passed_on) = (&field.at, passed_on(field));
+    field.data.touched.change(&mut own, |own| {
+        for j in (0..own.len()).filter(|j| at.carried[*j]) {
+            let push = passed_on.get(&j).unwrap_or(&at.push[j]);
+            own[j] = given(*push, at.metric[j], at.u[j]);
+        }
+    });
     Ok(own)
 }
 
 /// The forces of rows on carried unknowns that have rows of their own, without the forces of those.
 fn passed_on(field: &Field) -> BTreeMap<usize, f64> {
     let mut left = BTreeMap::new();
-    if !field.carried.contains(&true) {
+    if !field.at.carried.contains(&true) {
         return left;
     }
     for kind in RowKind::ALL {
@@ -57,8 +69,8 @@ fn passed_on(field: &Field) -> BTreeMap<usize, f64> {
         for i in (0..rows.len()).filter(|i| forces[*i] != 0.0) {
             let mut entries = rows.matrix.row(i);
             if let (Some((j, b)), None) = (entries.next(), entries.next()) {
-                if field.carried[j] {
-                    *left.entry(j).or_insert(field.push[j]) -= b * forces[i];
+                if field.at.carried[j] {
+                    *left.entry(j).or_insert(field.at.push[j]) -= b * forces[i];
                 }
             }
         }
@@ -66,51 +78,51 @@ fn passed_on(field: &Field) -> BTreeMap<usize, f64> {
     left
 }
 
-/// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, since a single unknown may be at rest by symmetry, and for carried unknowns the
-/// same by what their rows give them, `1/2 sum_i |b_ij| sum_l |b_il| delta_l / (D~_j (sum_l b_il^2 / D~_l + C_i))`; delta_j for
-/// grounded unknowns.
-fn with_neighbours(field: &Field, own: &[f64]) -> Result<Vec<f64>> {
-    let mut all = own.to_vec();
+/// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)` where rows touch, since a single unknown may be at rest by symmetry, and for carried
+/// unknowns the same by what their rows give them, `1/2 sum_i |b_ij| sum_l |b_il| delta_l / (D~_j (sum_l b_il^2 / D~_l + C_i))`; delta_j
+/// for grounded unknowns.
+fn with_neighbours(field: &Field, own: &ByBody, own_at: &[f64]) -> Result<Vec<f64>> {
+    let (touched, at) = (field.data.touched, &field.at);
+    let mut all = own_at.to_vec();
     for (p, body) in field.data.bodies.iter().enumerate() {
-        let range = field.range(p);
-        let (mut image, mut terms) = (vec![0.0; range.len()], vec![0.0; range.len()]);
-        body.stiffness.mul_with_terms(&own[range.clone()], &mut image, &mut terms)?;
-        for j in range.clone().filter(|j| !field.grounded[*j]) {
-            let joined = terms[j - range.start] / field.unit / field.metric[j];
+        let (mut image, mut terms) = (vec![0.0; own.on(p).len()], vec![0.0; own.on(p).len()]);
+        body.stiffness.mul_with_terms(own.on(p), &mut image, &mut terms)?;
+        for (j, dof) in touched.range(p).zip(touched.dofs(p)).filter(|(j, _)| !at.grounded[*j]) {
+            let joined = terms[dof] / field.unit / at.metric[j];
             all[j] = all[j].max(NEIGHBOURS * joined);
         }
     }
-    if field.carried.contains(&true) {
-        let led = by_rows(field, own);
+    if at.carried.contains(&true) {
+        let led = by_rows(field, own_at);
         all.iter_mut().zip(led).for_each(|(delta, led)| *delta = delta.max(NEIGHBOURS * led));
     }
     Ok(all)
 }
 
-/// Deformation that rows with a force pass on to carried unknowns, n, length.
+/// Deformation that rows with a force pass on to carried unknowns, where rows touch, length.
 fn by_rows(field: &Field, own: &[f64]) -> Vec<f64> {
     let mut led = vec![0.0; own.len()];
     for kind in RowKind::ALL {
         let (rows, forces) = (field.rows(kind), field.answer.forces(kind));
         for i in (0..rows.len()).filter(|i| forces[*i] != 0.0) {
-            for (j, b) in rows.matrix.row(i).filter(|(j, _)| field.carried[*j]) {
+            for (j, b) in rows.matrix.row(i).filter(|(j, _)| field.at.carried[*j]) {
                 let others = || rows.matrix.row(i).filter(|(l, _)| *l != j);
                 let moved: f64 = others().map(|(l, b)| b.abs() * own[l]).sum();
-                let yielding: f64 = others().map(|(l, b)| b * b / field.metric[l]).sum();
+                let yielding: f64 = others().map(|(l, b)| b * b / field.at.metric[l]).sum();
                 let yielding = yielding + field.unit * rows.compliance[i];
-                led[j] += ratio(b.abs() * moved, field.metric[j] * yielding);
+                led[j] += ratio(b.abs() * moved, field.at.metric[j] * yielding);
             }
         }
     }
     led
 }
 
-/// `|u - R a|`, n, length. a is the least-squares fit, in D without the grounded unknowns, of the rigid motions that
+/// `|u - R a|`, length. a is the least-squares fit, in D without the grounded unknowns, of the rigid motions that
 /// satisfy the rigid equality rows between bodies, `H R a = h`; rows on one body alone are ignored. `|u|` on bodies
 /// without a null space.
-fn without_motions(field: &Field) -> Result<Vec<f64>> {
+fn without_motions(field: &Field) -> Result<ByBody> {
     let data = field.data;
-    let mut left = field.answer.u.to_vec();
+    let mut left = field.answer.u.copied("the certificate")?;
     let mut first = Vec::with_capacity(data.bodies.len() + 1);
     first.push(0);
     for (motions, _) in &field.motions {
@@ -125,12 +137,12 @@ fn without_motions(field: &Field) -> Result<Vec<f64>> {
         }
         let (joints, given) = joints(field, &first, &weights);
         let kept = nearest(&joints, &given, amplitudes)?;
-        for (p, body) in data.bodies.iter().enumerate() {
+        for p in 0..data.bodies.len() {
             let a: Vec<f64> = kept[first[p]..first[p + 1]].iter().map(|b| b / weights[p]).collect();
-            field.motions[p].0.mul_add(-1.0, &a, &mut left[body.range()]);
+            field.motions[p].0.mul_add(-1.0, &a, left.on_mut(p));
         }
     }
-    left.iter_mut().for_each(|v| *v = v.abs());
+    left.change(|v| *v = v.abs());
     Ok(left)
 }
 
@@ -143,19 +155,18 @@ fn weights(field: &Field) -> Vec<f64> {
 /// `a = R'D u / unit` of body p, r, length, without grounded unknowns; a second fit of the remainder removes rounding of
 /// a long travel.
 fn fitted(field: &Field, p: usize) -> Vec<f64> {
-    let range = field.range(p);
-    let (motions, unit) = &field.motions[p];
+    let ((motions, unit), metric, u) = (&field.motions[p], field.metric.on(p), field.answer.u.on(p));
     let mut all = vec![0.0; motions.cols];
     if all.is_empty() {
         return all;
     }
     let by = field.unit / unit;
-    let mut left = field.free(p, |j| field.answer.u[j]);
+    let mut left = field.free(p, |j| u[j]);
     for _ in 0..2 {
-        let weighed: Vec<f64> = range.clone().map(|j| by * field.metric[j] * left[j - range.start]).collect();
+        let weighed: Vec<f64> = left.iter().zip(metric).map(|(left, d)| by * d * left).collect();
         let step = motions.mul_transposed(&weighed);
         motions.mul_add(-1.0, &step, &mut left);
-        left.iter_mut().zip(range.clone()).filter(|(_, j)| field.grounded[*j]).for_each(|(v, _)| *v = 0.0);
+        left = field.free(p, |j| left[j]);
         axpy(1.0, &step, &mut all);
     }
     all
@@ -171,10 +182,9 @@ fn joints(field: &Field, first: &[usize], weights: &[f64]) -> (Csr, Vec<f64>) {
         }
         let mut entries = Vec::new();
         for p in field.touched(rows, i) {
-            let body = &field.data.bodies[p];
-            let range = body.range();
-            let own = rows.matrix.row(i).filter(|(j, _)| range.contains(j));
-            let own: Vec<(usize, f64)> = own.map(|(j, v)| (j - range.start, v)).collect();
+            let (touched, own) = (field.data.touched, field.data.touched.range(p));
+            let own = rows.matrix.row(i).filter(|(j, _)| own.contains(j));
+            let own: Vec<(usize, f64)> = own.map(|(j, v)| (touched.dof(j), v)).collect();
             let resisted = resisted(&own, &field.motions[p].0).into_iter().enumerate();
             entries.extend(resisted.map(|(k, v)| (first[p] + k, v / weights[p])).filter(|e| e.1 != 0.0));
         }

@@ -32,13 +32,12 @@ pub(super) struct Energies {
 impl Energies {
     /// Adds body p, with its `K u` and `|K||u|`, n_p, force.
     pub fn add_body(&mut self, field: &Field, p: usize, (strain, terms): (&[f64], &[f64])) {
-        let range = field.range(p);
-        let u = &field.answer.u[range.clone()];
-        let given: Vec<f64> = range.clone().map(|j| field.load(p, j).abs() + field.push_terms[j]).collect();
+        let (u, push_terms) = (field.answer.u.on(p), field.push_terms.on(p));
+        let given: Vec<f64> = field.dofs(p).map(|j| field.load(p, j).abs() + push_terms[j]).collect();
         // rounding of a long sum would be many times that of its terms
         let strain = Twofold::dot(u, strain);
         self.strain += strain;
-        let loads: Vec<f64> = range.map(|j| field.load(p, j)).collect();
+        let loads: Vec<f64> = field.dofs(p).map(|j| field.load(p, j)).collect();
         self.work += Twofold::dot(&loads, u);
         self.terms += u.iter().zip(terms).zip(&given).map(|((u, t), g)| u.abs() * (t + g)).sum::<f64>();
         let size = field.led_size(p, &given);

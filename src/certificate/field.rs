@@ -1,110 +1,148 @@
-//! Quantities needed for all entries, over all unknowns and rows of the island.
+//! Quantities needed for all entries, over the unknowns of every body, the unknowns that rows touch, and the rows of the island.
 
 use std::borrow::Cow;
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::body::Stiffness;
-use crate::certificate::carried::{Metric, Search};
+use crate::certificate::carried::{everywhere, stiffest, Metric, Search};
 use crate::certificate::{BodyData, Candidate, Data, NOISE};
 use crate::constraints::{row_scales, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::vector::{power_of_two_below, weighted_norm};
-use crate::linalg::Matrix;
+use crate::linalg::{ByBody, Matrix};
+
+const WHAT: &str = "the certificate";
 
 pub(super) struct Field<'a> {
     pub data: &'a Data<'a>,
     pub answer: Candidate<'a>,
     /// U, the power of two below max D, force / length.
     pub unit: f64,
-    /// D~ / U, n, no unit.
-    pub metric: Vec<f64>,
-    /// D^ / U, n, no unit: in it forces that cancel move an unknown by their rounding.
-    pub led: Vec<f64>,
-    /// Carried unknowns, n.
-    pub carried: Vec<bool>,
+    /// D~ / U, no unit.
+    pub metric: ByBody,
+    /// D^ / U, no unit: in it forces that cancel move an unknown by their rounding.
+    pub led: ByBody,
     /// R of every body, and the unit with `R'D~R = unit`, force / length.
     pub motions: Vec<(Cow<'a, Matrix>, f64)>,
-    /// Grounded unknowns, n.
-    pub grounded: Vec<bool>,
-    /// r = B'lambda + H'mu + T'lambda_t, n, force.
-    pub push: Vec<f64>,
-    /// `|B'||lambda| + |H'||mu| + |T'||lambda_t|`, n, force.
-    pub push_terms: Vec<f64>,
+    /// Grounded unknowns.
+    pub grounded: ByBody<bool>,
+    /// r = B'lambda + H'mu + T'lambda_t, force.
+    pub push: ByBody,
+    /// `|B'||lambda| + |H'||mu| + |T'||lambda_t|`, force.
+    pub push_terms: ByBody,
+    /// The same and the answer where rows touch.
+    pub at: AtRows,
     /// `s_i / U^1/2` of contact, equality and tangential rows, no unit.
     pub scales: [Vec<f64>; 3],
 }
 
+/// Values at the unknowns that rows touch.
+pub(super) struct AtRows {
+    /// Length.
+    pub u: Vec<f64>,
+    pub metric: Vec<f64>,
+    pub led: Vec<f64>,
+    pub push: Vec<f64>,
+    pub push_terms: Vec<f64>,
+    /// Loads, force.
+    pub load: Vec<f64>,
+    pub grounded: Vec<bool>,
+    /// Carried unknowns.
+    pub carried: Vec<bool>,
+}
+
 impl<'a> Field<'a> {
     pub fn new(data: &'a Data<'a>, answer: Candidate<'a>) -> Result<Self> {
-        let n = answer.u.len();
+        let (touched, ranges) = (data.touched, data.ranges);
         let metered = data.metered();
-        let stiffest = |(_, k, unit): &(usize, Stiffness, f64)| {
-            (0..k.order()).map(|i| k.metric(i, *unit)).fold(0.0, f64::max)
-        };
-        let unit = power_of_two_below(metered.iter().map(stiffest).fold(0.0, f64::max));
+        let unit = metered.iter().map(|(k, without)| stiffest(*k, *without)).fold(0.0, f64::max);
+        let unit = power_of_two_below(unit);
         let forces = RowKind::ALL.map(|kind| answer.forces(kind));
         let holds = |kind: usize, i: usize| kind == RowKind::Equality as usize || forces[kind][i] != 0.0;
         let rows = RowKind::ALL.map(|kind| data.rows(kind));
-        let search = Search::new(&metered, rows, &holds, unit)?;
+        let search = Search::new(&metered, touched, rows, &holds, unit)?;
         let led = search.clone().led()?;
         let Metric { values: metric, carried: places } = search.metric()?;
-        let mut carried = vec![false; n];
+        let mut carried = vec![false; touched.len()];
         places.into_iter().for_each(|j| carried[j] = true);
-        let motions = data.bodies.iter().map(|body| motions(body, unit, &metric, &carried));
+        let metric = everywhere(&metered, (ranges, touched), &metric, unit);
+        let mut all_led = metric.clone();
+        touched.set(&led, &mut all_led);
+        let motions = data.bodies.iter().enumerate().map(|(p, body)| {
+            let is_carried = carried[touched.range(p)].contains(&true);
+            motions(body, unit, metric.on(p), is_carried)
+        });
         let motions = motions.collect::<Result<_>>()?;
-        let (mut push, mut push_terms) = (vec![0.0; n], vec![0.0; n]);
+        let mut grounded = ByBody::filled(ranges, false, WHAT)?;
+        for (p, body) in data.bodies.iter().enumerate().filter(|(_, body)| !body.grounded.is_empty()) {
+            let moving = moving(body)?;
+            let is_carried = |j: u32| touched.place(p, j as usize).is_some_and(|at| carried[at]);
+            let held = body.grounded.iter().filter(|j| !is_carried(**j) && !moving.contains(j));
+            held.for_each(|j| grounded.on_mut(p)[*j as usize] = true);
+        }
+        let (mut push, mut push_terms) = (vec![0.0; touched.len()], vec![0.0; touched.len()]);
         for kind in RowKind::ALL {
             let (rows, multipliers) = (data.rows(kind), answer.forces(kind));
             rows.matrix.mul_transposed_add(1.0, multipliers, &mut push);
             rows.matrix.mul_transposed_abs_add(multipliers, &mut push_terms);
         }
-        let mut grounded = vec![false; n];
-        for body in data.bodies.iter().filter(|body| !body.grounded.is_empty()) {
-            let moving = moving(body)?;
-            let free = |j: &&u32| carried[body.start + **j as usize] || moving.contains(j);
-            let held = body.grounded.iter().filter(|j| !free(j));
-            held.for_each(|j| grounded[body.start + *j as usize] = true);
-        }
-        let scales = RowKind::ALL.map(|kind| row_scales(data.rows(kind), &metric, unit));
-        Ok(Self { data, answer, unit, metric, led, carried, motions, grounded, push, push_terms, scales })
+        let load = data
+            .bodies
+            .iter()
+            .enumerate()
+            .flat_map(|(p, body)| touched.dofs(p).map(|dof| body.load.map_or(0.0, |load| load[dof])));
+        let at = AtRows {
+            u: touched.at(answer.u),
+            metric: touched.at(&metric),
+            led,
+            load: load.collect(),
+            grounded: touched.at(&grounded),
+            carried,
+            push,
+            push_terms,
+        };
+        let (mut push, mut push_terms) = (ByBody::zeros(ranges, WHAT)?, ByBody::zeros(ranges, WHAT)?);
+        touched.set(&at.push, &mut push);
+        touched.set(&at.push_terms, &mut push_terms);
+        let scales = RowKind::ALL.map(|kind| row_scales(data.rows(kind), &at.metric, unit));
+        Ok(Self { data, answer, unit, metric, led: all_led, motions, grounded, push, push_terms, at, scales })
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
         self.data.rows(kind)
     }
 
-    /// Range of the unknowns of body p among all unknowns.
-    pub fn range(&self, p: usize) -> Range<usize> {
-        self.data.bodies[p].range()
+    /// Unknowns of body p.
+    pub fn dofs(&self, p: usize) -> Range<usize> {
+        0..self.data.bodies[p].stiffness.order()
     }
 
-    /// `f_j`, force.
+    /// `f_j` of unknown j of body p, force.
     pub fn load(&self, p: usize, j: usize) -> f64 {
-        let body = &self.data.bodies[p];
-        body.load.map_or(0.0, |f| f[j - body.start])
+        self.data.bodies[p].load.map_or(0.0, |f| f[j])
     }
 
     /// `value` over the unknowns of body p, 0 if they are grounded.
     pub fn free(&self, p: usize, value: impl Fn(usize) -> f64) -> Vec<f64> {
-        self.range(p).map(|j| if self.grounded[j] { 0.0 } else { value(j) }).collect()
+        let grounded = self.grounded.on(p);
+        self.dofs(p).map(|j| if grounded[j] { 0.0 } else { value(j) }).collect()
     }
 
-    /// `|v|_{D^-1}` over the unknowns of body p, n_p, force.
+    /// `|v|_{D^-1}` over the unknowns of body p, force.
     pub fn size(&self, p: usize, v: &[f64]) -> f64 {
-        let start = self.data.bodies[p].start;
-        weighted_norm(v, |i| 1.0 / self.metric[start + i])
+        let metric = self.metric.on(p);
+        weighted_norm(v, |j| 1.0 / metric[j])
     }
 
-    /// `|v|_{D^-1}` in D^ over the unknowns of body p, n_p, force.
+    /// `|v|_{D^-1}` in D^ over the unknowns of body p, force.
     pub fn led_size(&self, p: usize, v: &[f64]) -> f64 {
-        let start = self.data.bodies[p].start;
-        weighted_norm(v, |i| 1.0 / self.led[start + i])
+        let led = self.led.on(p);
+        weighted_norm(v, |j| 1.0 / led[j])
     }
 
     /// `b_i D^-1 b_i' + C_i` in D^, length / force.
     pub fn compliance(&self, kind: RowKind, i: usize) -> f64 {
-        self.rows(kind).yields(i, &self.led, self.unit) / self.unit
+        self.rows(kind).yields(i, &self.at.led, self.unit) / self.unit
     }
 
     /// The bodies that row i touches, ascending.
@@ -114,8 +152,8 @@ impl<'a> Field<'a> {
             if j < end {
                 return None;
             }
-            let p = self.data.bodies.partition_point(|body| body.start <= j) - 1;
-            end = self.range(p).end;
+            let p = self.data.touched.body_of(j);
+            end = self.data.touched.range(p).end;
             Some(p)
         })
     }
@@ -127,13 +165,13 @@ fn motions<'a>(
     body: &BodyData<'a>,
     unit: f64,
     metric: &[f64],
-    carried: &[bool],
+    is_carried: bool,
 ) -> Result<(Cow<'a, Matrix>, f64)> {
     let given = body.null_space;
-    if given.cols == 0 || !body.soft && !carried[body.range()].contains(&true) {
+    if given.cols == 0 || !body.soft && !is_carried {
         return Ok((Cow::Borrowed(given), body.unit));
     }
-    let root = |i: usize| metric[body.start + i].sqrt();
+    let root = |i: usize| metric[i].sqrt();
     let basis = Matrix::from_fn(given.rows, given.cols, |i, j| root(i) * given.get(i, j))?;
     let basis = basis.orthonormalised(NOISE);
     let motions = Matrix::from_fn(basis.rows, basis.cols, |i, j| basis.get(i, j) / root(i))?;

@@ -41,22 +41,22 @@ impl Forces {
         let (mut loads, mut pushes) = (Vec::new(), Vec::new());
         for p in 0..field.data.bodies.len() {
             let load = field.size(p, &field.free(p, |j| field.load(p, j)));
-            let push = field.size(p, &field.free(p, |j| field.push[j]));
-            let all = field.range(p).all(|j| field.grounded[j]);
+            let (own, own_terms) = (field.push.on(p), field.push_terms.on(p));
+            let push = field.size(p, &field.free(p, |j| own[j]));
+            let all = field.grounded.on(p).iter().all(|grounded| *grounded);
             sizes.push((!all).then_some(load + push));
-            let given = field.free(p, |j| field.load(p, j).abs() + field.push_terms[j]);
+            let given = field.free(p, |j| field.load(p, j).abs() + own_terms[j]);
             terms.push(field.size(p, &given));
             led.push(field.led_size(p, &given));
             loads.push(load);
-            pushes.push(field.size(p, &field.push[field.range(p)]));
+            pushes.push(field.size(p, own));
         }
         let forces = norm_of([loads.as_slice(), pushes.as_slice()].concat());
         let moved = if loads.iter().all(|load| *load == 0.0) { asked(field) } else { 0.0 };
-        let rounding = |j: usize| NOISE * field.answer.u[j].abs();
         let strains = (0..field.data.bodies.len()).map(|p| {
-            let strain = field.free(p, |j| positive(deformation.own[j] - rounding(j)));
-            let start = field.range(p).start;
-            field.unit * weighted_norm(&strain, |i| field.metric[start + i])
+            let (own, u, metric) = (deformation.own.on(p), field.answer.u.on(p), field.metric.on(p));
+            let strain = field.free(p, |j| positive(own[j] - NOISE * u[j].abs()));
+            field.unit * weighted_norm(&strain, |j| metric[j])
         });
         let strains: Vec<f64> = strains.collect();
         let of_body = |(size, strain): (&Option<f64>, &f64)| ratio(size.unwrap_or(0.0), *strain);
@@ -123,10 +123,10 @@ impl Forces {
 /// The largest `(|f_j| + |r_j|) / |D_j u_j|` of a grounded unknown, no unit.
 fn of_grounded(field: &Field) -> f64 {
     let of = |p: usize, j: usize| {
-        let acting = field.load(p, j).abs() + field.push[j].abs();
-        ratio(acting / field.unit, field.metric[j] * field.answer.u[j].abs())
+        let acting = field.load(p, j).abs() + field.push.on(p)[j].abs();
+        ratio(acting / field.unit, field.metric.on(p)[j] * field.answer.u.on(p)[j].abs())
     };
-    let own = |p: usize| field.range(p).filter(|j| field.grounded[*j]).map(move |j| of(p, j));
+    let own = |p: usize| field.dofs(p).filter(move |j| field.grounded.on(p)[*j]).map(move |j| of(p, j));
     (0..field.data.bodies.len()).flat_map(own).fold(0.0, f64::max)
 }
 
@@ -141,16 +141,16 @@ fn smaller(a: f64, b: f64) -> f64 {
 
 /// `|f|_{D^-1} + |r|_{D^-1}` over the unknowns of body p in row i, force; 0 unless all of these unknowns are grounded.
 fn at_grounded(field: &Field, rows: &RowSet, i: usize, p: usize) -> f64 {
-    let range = field.range(p);
+    let (range, at) = (field.data.touched.range(p), &field.at);
     let own: Vec<usize> = rows.matrix.row(i).map(|(j, _)| j).filter(|j| range.contains(j)).collect();
-    if !own.iter().all(|&j| field.grounded[j]) {
+    if !own.iter().all(|&j| at.grounded[j]) {
         return 0.0;
     }
     let size = |of: &dyn Fn(usize) -> f64| {
         let forces: Vec<f64> = own.iter().map(|&j| of(j)).collect();
-        weighted_norm(&forces, |at| 1.0 / field.metric[own[at]])
+        weighted_norm(&forces, |k| 1.0 / at.metric[own[k]])
     };
-    size(&|j| field.load(p, j)) + size(&|j| field.push[j])
+    size(&|j| at.load[j]) + size(&|j| at.push[j])
 }
 
 /// The forces that would cause the motion prescribed by rows and grounded unknowns, force: `|S c_-| + |S_H h|`, `|S_T
@@ -162,10 +162,11 @@ fn asked(field: &Field) -> f64 {
         field.unit * norm_of((0..rows.len()).map(|i| scale[i] * motion(rows.rhs[i])).collect())
     };
     let by_support = (0..field.data.bodies.len()).map(|p| {
-        let softest = |free: f64, j: usize| if field.grounded[j] { free } else { field.metric[j].max(free) };
-        let stiffness = field.range(p).fold(0.0, softest).sqrt();
-        let moved = field.range(p).filter(|j| field.grounded[*j]);
-        norm_of(moved.map(|j| stiffness * field.load(p, j) / field.metric[j]).collect())
+        let (grounded, metric) = (field.grounded.on(p), field.metric.on(p));
+        let softest = |free: f64, j: usize| if grounded[j] { free } else { metric[j].max(free) };
+        let stiffness = field.dofs(p).fold(0.0, softest).sqrt();
+        let moved = field.dofs(p).filter(|j| grounded[*j]);
+        norm_of(moved.map(|j| stiffness * field.load(p, j) / metric[j]).collect())
     });
     let by_support = norm_of(by_support.collect());
     let contact = by_rows(RowKind::Inequality, |c| c.min(0.0));
@@ -193,9 +194,9 @@ pub(super) fn judge(
     (certificate, lost): (&mut Certificate, &mut Entry),
     energies: &mut Energies,
 ) -> Result<()> {
-    let (range, limit) = (field.range(p), field.data.limit);
-    let (mut strain, mut terms) = (vec![0.0; range.len()], vec![0.0; range.len()]);
-    field.data.bodies[p].stiffness.mul_with_terms(&field.answer.u[range], &mut strain, &mut terms)?;
+    let (u, limit) = (field.answer.u.on(p), field.data.limit);
+    let (mut strain, mut terms) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+    field.data.bodies[p].stiffness.mul_with_terms(u, &mut strain, &mut terms)?;
     let shares = [
         equilibrium(field, forces, p, (&strain, &terms)),
         cancelled(field, forces, p, (&strain, &terms)),
@@ -210,22 +211,21 @@ pub(super) fn judge(
     Ok(())
 }
 
-/// `res_j`, force, and 64 eps times its terms `t = |K||u| + |f| + |B'||lambda| + |H'||mu|`, from `K u` and `|K||u|` of
-/// body p.
+/// `res_j` of unknown j of body p, force, and 64 eps times its terms `t = |K||u| + |f| + |B'||lambda| + |H'||mu|`, from its `K u` and
+/// `|K||u|`.
 fn residual(field: &Field, p: usize, (strain, terms): (&[f64], &[f64]), j: usize) -> (f64, f64) {
-    let (i, f) = (j - field.range(p).start, field.load(p, j));
-    (strain[i] - f + field.push[j], NOISE * (terms[i] + f.abs() + field.push_terms[j]))
+    let f = field.load(p, j);
+    (strain[j] - f + field.push.on(p)[j], NOISE * (terms[j] + f.abs() + field.push_terms.on(p)[j]))
 }
 
 /// `|(|res_j| - 64 eps t_j)_+|_{D^-1}` relative to `tol (|f| + |r| + |K u|)_{D^-1}`, without grounded unknowns; no unit.
 fn equilibrium(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64])) -> f64 {
     let Some(size) = forces.sizes[p] else { return 0.0 };
-    let start = field.range(p).start;
     let left = field.free(p, |j| {
         let (residual, noise) = residual(field, p, products, j);
         positive(residual.abs() - noise)
     });
-    let strain = field.size(p, &field.free(p, |j| products.0[j - start]));
+    let strain = field.size(p, &field.free(p, |j| products.0[j]));
     share(
         field.size(p, &left),
         field.data.limit * (size + strain) + forces.idle(p, size, field.data.accuracy),
@@ -247,22 +247,21 @@ fn excused(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64]))
 /// The residual excused by rounding of row forces that cancel, relative to `tol` times the forces of the island; no unit.
 /// Redundant rows may distribute a force arbitrarily, but these forces must not be so large that their sum is lost.
 fn cancelled(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64])) -> f64 {
-    let left = |j: usize| residual(field, p, products, j).0.abs().min(NOISE * field.push_terms[j]);
-    let left: Vec<f64> = field.range(p).map(left).collect();
+    let left = |j: usize| residual(field, p, products, j).0.abs().min(NOISE * field.push_terms.on(p)[j]);
+    let left: Vec<f64> = field.dofs(p).map(left).collect();
     let allowed = field.data.limit * (forces.everywhere + forces.strain);
     share(field.size(p, &left), allowed)
 }
 
 /// `(|res_j| - 64 eps t_j)_+` relative to `tol (|r_j| + sum_k |K_jk||u_k|)`, the worst grounded unknown; no unit.
 fn grounded(field: &Field, p: usize, products: (&[f64], &[f64])) -> f64 {
-    let start = field.range(p).start;
     let of = |j: usize| {
         let (residual, noise) = residual(field, p, products, j);
-        let size = field.push[j].abs() + products.1[j - start];
+        let size = field.push.on(p)[j].abs() + products.1[j];
         share(positive(residual.abs() - noise), field.data.limit * size)
     };
     let worse = |worst: f64, share: f64| if share <= worst || worst.is_nan() { worst } else { share };
-    field.range(p).filter(|j| field.grounded[*j]).map(of).fold(0.0, worse)
+    field.dofs(p).filter(|j| field.grounded.on(p)[*j]).map(of).fold(0.0, worse)
 }
 
 /// `|R'(f - r)|` relative to `tol (|f| + |r|)_{D^-1} + 64 eps ||f| + |B'||lambda| + |H'||mu||_{D^-1}`, without grounded
@@ -274,15 +273,16 @@ fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     let Some(size) = forces.sizes[p].filter(|_| motions.cols > 0) else { return Ok(0.0) };
     let allowed =
         field.data.limit * size + NOISE * forces.terms[p] + forces.idle(p, size, field.data.accuracy);
+    let push = field.push.on(p);
     // soft motions bend the body, and move grounded unknowns a little
     let felt = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
         if body.soft {
-            field.range(p).map(value).collect()
+            field.dofs(p).map(value).collect()
         } else {
             field.free(p, value)
         }
     };
-    let mut resultants = motions.mul_transposed(&felt(&|j| field.load(p, j) - field.push[j]));
+    let mut resultants = motions.mul_transposed(&felt(&|j| field.load(p, j) - push[j]));
     let weight = field.unit / unit;
     let of_grounded = if body.soft { terms_of_grounded(field, p) } else { 0.0 };
     let allowed = allowed + NOISE * of_grounded * weight.sqrt();
@@ -290,7 +290,7 @@ fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     if ratio <= 1.0 && !body.soft {
         return Ok(ratio);
     }
-    let u = felt(&|j| field.answer.u[j]);
+    let u = felt(&|j| field.answer.u.on(p)[j]);
     let held =
         if body.soft { held_softly(body, motions, &u)? } else { resisted(field, p)?.mul_transposed(&u) };
     resultants.iter_mut().zip(held).for_each(|(left, held)| *left -= held);
@@ -299,12 +299,12 @@ fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
 
 /// `sum_j max_k |R_jk| (|f_j| + sum |b_j||lambda|)` over the grounded unknowns of body p.
 fn terms_of_grounded(field: &Field, p: usize) -> f64 {
-    let (range, motions) = (field.range(p), &field.motions[p].0);
+    let (motions, push_terms) = (&field.motions[p].0, field.push_terms.on(p));
     let of = |j: usize| {
-        let fastest = |most: f64, k: usize| most.max(motions.get(j - range.start, k).abs());
-        (0..motions.cols).fold(0.0, fastest) * (field.load(p, j).abs() + field.push_terms[j])
+        let fastest = |most: f64, k: usize| most.max(motions.get(j, k).abs());
+        (0..motions.cols).fold(0.0, fastest) * (field.load(p, j).abs() + push_terms[j])
     };
-    range.clone().filter(|j| field.grounded[*j]).map(of).sum()
+    field.dofs(p).filter(|j| field.grounded.on(p)[*j]).map(of).sum()
 }
 
 /// `(K R)'u` of a body, r, in double-double arithmetic: for a weak spring the terms nearly cancel, and if K R is rounding

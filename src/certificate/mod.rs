@@ -21,16 +21,16 @@ mod row;
 mod rows;
 
 use std::borrow::Cow;
-use std::ops::Range;
 
 use crate::body::Stiffness;
-use crate::constraints::{FrictionNode, RowKind, RowSet};
+use crate::constraints::{FrictionNode, RowKind, RowSet, Touched};
 use crate::error::Result;
+use crate::linalg::by_body::Ranges;
 use crate::linalg::vector::{norm_max, power_of_two_below};
-use crate::linalg::Matrix;
+use crate::linalg::{ByBody, Matrix};
 
 pub use crate::linalg::vector::NOISE;
-pub use carried::{led, Metric};
+pub use carried::{everywhere, led, Metric};
 use clusters::Metered;
 use deformation::Deformation;
 use energy::Energies;
@@ -40,16 +40,19 @@ use forces::Forces;
 pub use grounded::grounded;
 use rows::Measured;
 
-/// One island in terms of the host's data; its unknowns are those of its bodies one after the other.
+/// One island in terms of the host's data.
 #[derive(Clone)]
 pub struct Data<'a> {
-    /// Bodies in the order of their unknowns.
     pub bodies: Vec<BodyData<'a>>,
-    /// `B u <= c`, m x n. A gap of +infinity never closes.
+    /// Their unknowns in vectors over all of them.
+    pub ranges: &'a Ranges,
+    /// The unknowns that rows touch, t.
+    pub touched: &'a Touched,
+    /// `B u <= c`, m x t. A gap of +infinity never closes.
     pub contact: &'a RowSet,
-    /// `H u = h`, q x n.
+    /// `H u = h`, q x t.
     pub equalities: &'a RowSet,
-    /// T of nodes with friction, with s_old as right-hand sides, t x n.
+    /// T of nodes with friction, with s_old as right-hand sides.
     pub tangential: &'a RowSet,
     /// Their laws, with row numbers of this island.
     pub nodes: &'a [FrictionNode],
@@ -62,7 +65,7 @@ pub struct Data<'a> {
 impl<'a> Data<'a> {
     /// The bodies, for the search for what rows hold.
     pub fn metered(&self) -> Vec<Metered<'a>> {
-        self.bodies.iter().map(|body| (body.start, body.stiffness, body.unit)).collect()
+        self.bodies.iter().map(|body| (body.stiffness, body.unit)).collect()
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
@@ -80,7 +83,8 @@ impl<'a> Data<'a> {
             return Cow::Borrowed(self);
         }
         let loads = self.bodies.iter().map(|body| norm_max(body.load.unwrap_or_default()));
-        let (mut force, mut way) = (loads.fold(0.0, f64::max), norm_max(answer.u));
+        let travelled = answer.u.each().map(norm_max).fold(0.0, f64::max);
+        let (mut force, mut way) = (loads.fold(0.0, f64::max), travelled);
         for kind in RowKind::ALL {
             let rows = self.rows(kind);
             for (i, f) in answer.forces(kind).iter().enumerate() {
@@ -96,17 +100,18 @@ impl<'a> Data<'a> {
         Cow::Owned(Self { bodies, ..self.clone() })
     }
 
-    /// Grounded unknowns of all bodies.
-    pub fn grounded(&self) -> impl Iterator<Item = usize> + '_ {
-        self.bodies.iter().flat_map(|body| body.grounded.iter().map(|j| body.start + *j as usize))
+    /// A vector that is 0 on grounded unknowns.
+    pub fn without_grounded(&self, mut v: ByBody) -> ByBody {
+        for (p, body) in self.bodies.iter().enumerate() {
+            body.grounded.iter().for_each(|j| v.on_mut(p)[*j as usize] = 0.0);
+        }
+        v
     }
 }
 
 /// One body of the island, n_p unknowns.
 #[derive(Clone)]
 pub struct BodyData<'a> {
-    /// Number of its first unknown in the island.
-    pub start: usize,
     /// K_p, n_p x n_p, force / length.
     pub stiffness: Stiffness<'a>,
     /// f_p, n_p, force; zero if absent.
@@ -121,23 +126,11 @@ pub struct BodyData<'a> {
     pub grounded: &'a [u32],
 }
 
-impl BodyData<'_> {
-    /// Range of its unknowns in the island.
-    pub fn range(&self) -> Range<usize> {
-        self.start..self.start + self.stiffness.order()
-    }
-
-    /// D over its unknowns, force / length.
-    pub fn metric(&self) -> impl Iterator<Item = f64> + '_ {
-        (0..self.stiffness.order()).map(|i| self.stiffness.metric(i, self.unit))
-    }
-}
-
-/// An answer over all unknowns, contact rows, equality rows of the island.
+/// An answer on the bodies, contact rows, equality rows of the island.
 #[derive(Clone, Copy)]
 pub struct Candidate<'a> {
-    /// n, length.
-    pub u: &'a [f64],
+    /// Length.
+    pub u: &'a ByBody,
     /// m, force.
     pub lambda: &'a [f64],
     /// q, force.

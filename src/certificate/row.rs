@@ -39,9 +39,9 @@ impl JudgedRow {
             let at = |(j, b): (usize, f64)| (b / metric[j] * (forces[j] / field.unit)).abs();
             rows.matrix.row(i).map(at).sum()
         };
-        let felt = given_way.min(moves(&field.push, &field.metric) + rows.compliance[i] * force.abs());
-        let cancelled = moves(&field.push_terms, &field.led);
-        let moved = rows.matrix.row_dot_abs(i, field.answer.u);
+        let felt = given_way.min(moves(&field.at.push, &field.at.metric) + rows.compliance[i] * force.abs());
+        let cancelled = moves(&field.at.push_terms, &field.at.led);
+        let moved = rows.matrix.row_dot_abs(i, &field.at.u);
         let size = rows.matrix.row_dot_abs(i, &deformation.joined) + felt;
         let given = rows.rhs[i].abs() + rows.compliance[i] * force.abs();
         // forces that do not deform a body are known to rounding, and so is its displacement
@@ -54,8 +54,8 @@ impl JudgedRow {
         let by_spring = if rows.compliance[i] > 0.0 { rows.compliance[i] * force_limit } else { 0.0 };
         let allowed = field.data.limit * size + rounding + by_spring;
         let gap_limit = if known { allowed } else { f64::NAN };
-        let own = rows.matrix.row_dot_abs(i, &deformation.own) + felt;
-        let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * own);
+        let own = rows.matrix.row_dot_abs(i, &deformation.own_at) + felt;
+        let (open, weighed) = (rows.open_gap(i, &field.at.u, force), scale * own);
         let closed = force.abs() > force_limit;
         let unevenness = if closed { ratio(weighed, forces.least_deformation(field, kind, i)) } else { 0.0 };
         let slipping = 0.0;

@@ -12,12 +12,14 @@ mod friction;
 mod grouping;
 mod kind;
 mod taken;
+mod touched;
 
 pub use decoupling::{Decoupling, UnitRows};
 pub use friction::{Friction, FrictionInput, FrictionNode};
 pub use grouping::Grouping;
 pub use kind::RowKind;
 pub use taken::Taken;
+pub use touched::Touched;
 
 use std::sync::Arc;
 

@@ -37,7 +37,7 @@ pub fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
 /// `|b_k|` of every row of a body, without the entries at held unknowns if its motions are soft: soft motions are those with exactly
 /// these values there.
 fn uncertain(s: &Subdomain) -> Vec<f64> {
-    let mut held = vec![false; s.range.len()];
+    let mut held = vec![false; s.kplus.null_space.rows];
     if !s.kplus.stiffness.is_empty() {
         s.kplus.fixing.iter().for_each(|&j| held[j] = true);
     }

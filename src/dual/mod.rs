@@ -30,20 +30,19 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::body::GeneralizedInverse;
+use crate::constraints::Touched;
 use crate::dual::images::{coarse, scale_by_body};
 use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::dual::springs::{add_springs, negative_modes};
 use crate::error::Result;
 use crate::linalg::vector::{dot, norm_max, weighted_norm, NOISE};
-use crate::linalg::{Csr, Packed};
+use crate::linalg::{ByBody, Csr, Packed};
 use crate::platform::memory::zeros;
 use crate::platform::tally;
 
 /// One body in the dual problem.
 struct Subdomain {
-    /// Unknowns of the body among all unknowns.
-    range: Range<usize>,
     /// Rigid modes of the body among all modes.
     modes: Range<usize>,
     kplus: Arc<GeneralizedInverse>,
@@ -78,9 +77,8 @@ pub struct Dual {
     pub negative: Vec<(usize, f64)>,
 }
 
-/// A body and the range of its unknowns.
+/// A body of the dual problem.
 pub struct BodyShare {
-    pub range: Range<usize>,
     pub kplus: Arc<GeneralizedInverse>,
     /// Ratio of the unit of forces to the unit of K in `K_p+`, a power of two.
     pub by: f64,
@@ -101,10 +99,10 @@ pub struct Draft {
 }
 
 impl Draft {
-    /// `matrix` is B, m x n.
-    pub fn new(parts: Vec<BodyShare>, matrix: &Arc<Csr>) -> Self {
-        let ranges: Vec<_> = parts.iter().map(|part| part.range.clone()).collect();
-        let local = cut(&ranges, matrix);
+    /// `matrix` is B over the unknowns that rows touch.
+    pub fn new(parts: Vec<BodyShare>, touched: &Touched, matrix: &Arc<Csr>) -> Self {
+        let orders: Vec<_> = parts.iter().map(|part| part.kplus.null_space.rows).collect();
+        let local = cut(&orders, touched, matrix);
         let (mut subdomains, mut distinct) =
             (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
         let mut first = 0;
@@ -115,7 +113,6 @@ impl Draft {
             let modes = first..first + part.kplus.null_space.cols;
             first = modes.end;
             subdomains.push(Subdomain {
-                range: part.range,
                 modes,
                 kplus: part.kplus,
                 size: 1.0,
@@ -174,15 +171,20 @@ impl Dual {
         self.subdomains.iter().map(kept).collect()
     }
 
-    /// Numbers of distinct rows of B over each of these ranges of all unknowns, ascending; rows that are multiples of each other
+    /// Numbers of distinct rows of B over each body of these numbers of unknowns; rows that are multiples of each other
     /// count once. Row `tangential` is the first tangential row.
-    pub fn distinct_rows(ranges: &[Range<usize>], matrix: &Arc<Csr>, tangential: usize) -> Vec<DistinctRows> {
+    pub fn distinct_rows(
+        orders: &[usize],
+        touched: &Touched,
+        matrix: &Arc<Csr>,
+        tangential: usize,
+    ) -> Vec<DistinctRows> {
         let count = |(rows, local): &(Vec<usize>, Arc<Csr>)| {
             let multiples = Multiples::of(local).0;
             let others = rows.partition_point(|row| *row < tangential);
             DistinctRows { rows: multiples.count, places: multiples.count_of_first(others) }
         };
-        cut(ranges, matrix).iter().map(count).collect()
+        cut(orders, touched, matrix).iter().map(count).collect()
     }
 
     /// Dimension r of the null space of all bodies.
@@ -218,8 +220,8 @@ impl Dual {
     /// `B_p K_p+ f_p` over the rows that touch body p: the motion caused by its load alone.
     pub fn moved(&self, p: usize, f: &[f64]) -> Result<Vec<f64>> {
         let s = &self.subdomains[p];
-        let mut x = zeros(s.range.len(), "a displacement")?;
-        s.kplus.apply(&f[s.range.clone()], &mut x)?;
+        let mut x = zeros(f.len(), "a displacement")?;
+        s.kplus.apply(f, &mut x)?;
         Ok((0..s.rows.len()).map(|k| s.by * s.matrix.row_dot(k, &x)).collect())
     }
 
@@ -256,11 +258,11 @@ impl Dual {
     }
 
     /// The right-hand side of `G lambda = e` in (12), `e = R'f`; 0 if it is rounding of a self-equilibrated load.
-    pub fn resultants(&self, f: &[f64]) -> Vec<f64> {
+    pub fn resultants(&self, f: &ByBody) -> Vec<f64> {
         let mut e = vec![0.0; self.modes()];
-        for s in &self.subdomains {
+        for (s, f) in self.subdomains.iter().zip(f.each()) {
             for (k, mode) in s.modes.clone().enumerate() {
-                let (motion, f) = (s.kplus.null_space.col(k), &f[s.range.clone()]);
+                let motion = s.kplus.null_space.col(k);
                 let size = norm_max(motion) * f.iter().map(|f| f.abs()).sum::<f64>();
                 let resultant = Some(dot(motion, f)).filter(|e| e.abs() > s.kplus.rounding * size);
                 e[mode] = resultant.unwrap_or(0.0) / s.size;
@@ -271,13 +273,11 @@ impl Dual {
 
     /// For each mode the reference of its resultant: `|f|_{D^-1}` of its body, in the unit of the resultants; `metric`: D
     /// over the unknowns.
-    pub fn sizes_of_loads(&self, f: &[f64], metric: &[f64]) -> Vec<f64> {
-        let of = |s: &Subdomain| {
-            let start = s.range.start;
-            let size = weighted_norm(&f[s.range.clone()], |j| 1.0 / (metric[start + j] * s.by)) / s.size;
-            vec![size; s.modes.len()]
+    pub fn sizes_of_loads(&self, f: &ByBody, metric: &ByBody) -> Vec<f64> {
+        let of = |((s, f), d): ((&Subdomain, &[f64]), &[f64])| {
+            vec![weighted_norm(f, |j| 1.0 / (d[j] * s.by)) / s.size; s.modes.len()]
         };
-        self.subdomains.iter().flat_map(of).collect()
+        self.subdomains.iter().zip(f.each()).zip(metric.each()).flat_map(of).collect()
     }
 
     /// For each mode the factor for its resultants e for which their norm is `|D R c|_{D^-1}` of the load given by
@@ -287,54 +287,53 @@ impl Dual {
         self.subdomains.iter().flat_map(of).collect()
     }
 
-    /// `D R c`, n, the load of least |f|_{D^-1} with the resultants `e`; `metric`: D over the unknowns.
-    pub fn load_of(&self, e: &[f64], unknowns: usize, metric: &[f64]) -> Vec<f64> {
-        let mut load = vec![0.0; unknowns];
-        for s in &self.subdomains {
-            let own = &mut load[s.range.clone()];
+    /// `D R c`, the load of least |f|_{D^-1} with the resultants `e`; `metric`: D over the unknowns.
+    pub fn load_of(&self, e: &[f64], metric: &ByBody) -> ByBody {
+        let mut load = metric.clone();
+        for (p, s) in self.subdomains.iter().enumerate() {
+            let own = load.on_mut(p);
+            own.fill(0.0);
             s.kplus.null_space.mul_add(s.size, &e[s.modes.clone()], own);
-            own.iter_mut().zip(&metric[s.range.clone()]).for_each(|(f, d)| *f *= d * s.by);
+            own.iter_mut().zip(metric.on(p)).for_each(|(f, d)| *f *= d * s.by);
         }
         load
     }
 
     /// `u_p = K_p+ f_p` of body p, (17) without its rigid motion, for the load f left by the forces of the rows; (16) if
-    /// it is held, K+ = K^-1. The load covers all bodies.
+    /// it is held, K+ = K^-1.
     pub fn displacement(&self, p: usize, f: &[f64]) -> Result<Vec<f64>> {
         let s = &self.subdomains[p];
-        let mut u = zeros(s.range.len(), "a displacement")?;
-        s.kplus.apply(&f[s.range.clone()], &mut u)?;
+        let mut u = zeros(f.len(), "a displacement")?;
+        s.kplus.apply(f, &mut u)?;
         u.iter_mut().for_each(|u| *u *= s.by);
         Ok(u)
     }
 
-    /// `v = R a`, over all unknowns.
-    pub fn rigid_motion(&self, a: &[f64], unknowns: usize) -> Vec<f64> {
-        let mut v = vec![0.0; unknowns];
-        for s in &self.subdomains {
-            s.kplus.null_space.mul_add(1.0 / s.size, &a[s.modes.clone()], &mut v[s.range.clone()]);
-        }
-        v
+    /// `v += R a` of body p, a over all modes.
+    pub fn add_rigid_motion(&self, p: usize, a: &[f64], v: &mut [f64]) {
+        let s = &self.subdomains[p];
+        s.kplus.null_space.mul_add(1.0 / s.size, &a[s.modes.clone()], v);
     }
 }
 
 /// Runs tasks 0..count and collects their results in order, or the first error in order.
 pub type InParallel<'a, T> = dyn Fn(usize, &(dyn Fn(usize) -> Result<T> + Sync)) -> Result<Vec<T>> + 'a;
 
-/// For bodies with these ranges, which cover all unknowns in ascending order: the rows of B that touch the body, and
-/// their entries over its unknowns; a body that all rows touch alone shares B.
-fn cut(ranges: &[Range<usize>], matrix: &Arc<Csr>) -> Vec<(Vec<usize>, Arc<Csr>)> {
-    if ranges.len() == 1 && matrix.ptr.windows(2).all(|ends| ends[0] < ends[1]) {
+/// For bodies of these numbers of unknowns the rows of B that touch each, and their entries over its unknowns; a body that all rows
+/// touch alone, at every unknown, shares B.
+fn cut(orders: &[usize], touched: &Touched, matrix: &Arc<Csr>) -> Vec<(Vec<usize>, Arc<Csr>)> {
+    let is_whole = orders.len() == 1 && touched.len() == orders[0];
+    if is_whole && matrix.ptr.windows(2).all(|ends| ends[0] < ends[1]) {
         return vec![((0..matrix.rows()).collect(), Arc::clone(matrix))];
     }
-    let mut bodies: Vec<_> = ranges.iter().map(|range| (Vec::new(), Csr::empty(range.len()))).collect();
+    let mut bodies: Vec<_> = orders.iter().map(|order| (Vec::new(), Csr::empty(*order))).collect();
     for i in 0..matrix.rows() {
         let mut entries = matrix.row(i).peekable();
         while let Some(&(first, _)) = entries.peek() {
-            let p = ranges.partition_point(|range| range.end <= first);
-            let (rows, local) = &mut bodies[p];
-            let inside = std::iter::from_fn(|| entries.next_if(|(j, _)| *j < ranges[p].end));
-            local.push_row(inside.map(|(j, v)| (j - ranges[p].start, v)));
+            let p = touched.body_of(first);
+            let (end, (rows, local)) = (touched.range(p).end, &mut bodies[p]);
+            let inside = std::iter::from_fn(|| entries.next_if(|(j, _)| *j < end));
+            local.push_row(inside.map(|(j, v)| (touched.dof(j), v)));
             rows.push(i);
         }
     }
@@ -363,6 +362,7 @@ mod tests {
             of(&[2], 1, &[&[(0, 0.0)]]),
             of(&[0, 3], 1, &[&[(0, 4.0)], &[(0, 7.0)]]),
         ];
-        assert_eq!(cut(&[0..2, 2..5, 5..6, 6..7], &Arc::new(matrix)), expected);
+        let touched = Touched::of(&[0..2, 2..5, 5..6, 6..7], 0..7);
+        assert_eq!(cut(&[2, 3, 1, 1], &touched, &Arc::new(matrix)), expected);
     }
 }

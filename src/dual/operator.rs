@@ -30,7 +30,7 @@ impl Subdomain {
             return Ok(self.multiples.spread(&image).map(|v| self.by * v).collect());
         }
         let local: Vec<f64> = self.rows.iter().map(|&i| x[i]).collect();
-        let mut moved = zeros(self.range.len(), WHAT)?;
+        let mut moved = zeros(self.matrix.cols, WHAT)?;
         self.matrix.mul_transposed_add(1.0, &local, &mut moved);
         match by {
             Accuracy::Full => self.kplus.apply_in_place(&mut moved)?,
@@ -173,6 +173,7 @@ fn add(common: &[(usize, usize)], entry: impl Fn(usize, usize) -> f64, block: &m
 mod tests {
     use super::*;
     use crate::body::{GeneralizedInverse, Modes, NullSpaceInput};
+    use crate::constraints::Touched;
     use crate::dual::{BodyShare, Draft, Size};
     use crate::linalg::{Operator, Symmetric};
     use std::sync::Arc;
@@ -185,10 +186,10 @@ mod tests {
         let val: Vec<_> = (0..n).flat_map(|_| [-1.0, 2.0]).skip(1).collect();
         let k = Symmetric::new(ptr, col, val);
         let none = NullSpaceInput { vectors: Matrix::zeros(8, 0).unwrap(), modes: Modes::Exact };
-        let part = |p: usize| {
+        let part = || {
             let made = GeneralizedInverse::plan(k.clone().into(), &none, 1e-8).unwrap().execute().unwrap();
-            let (range, size) = (8 * p..8 * p + 8, Size::default());
-            BodyShare { range, kplus: Arc::new(made.inverse), by: 1.0, kept: None, size, implicit }
+            let size = Size::default();
+            BodyShare { kplus: Arc::new(made.inverse), by: 1.0, kept: None, size, implicit }
         };
         let mut rows = Csr::empty(16);
         rows.push_row([(2, 1.0), (9, -0.5)]);
@@ -196,7 +197,7 @@ mod tests {
         rows.push_row([(12, 2.0)]);
         rows.push_row([(5, 1.0), (6, -1.0), (15, 1.0)]);
         let compliance = vec![0.0, 0.1, 0.0, 0.2];
-        let draft = Draft::new(vec![part(0), part(1)], &Arc::new(rows));
+        let draft = Draft::new(vec![part(), part()], &Touched::of(&[0..8, 8..16], 0..16), &Arc::new(rows));
         let operators = (0..2).map(|p| draft.assemble(p).unwrap()).collect();
         draft.finish(operators, compliance, true)
     }

@@ -2,9 +2,9 @@
 //! that are not held. S_b is the stiffness of the constrained dofs: lumped or Dirichlet. Compliant rows add C to both,
 //! `M_F = W^-1 (B_F D^-1 S_b D^-1 B_F' + C_F) W^-1`, `W = B_F D^-1 B_F' + C_F`.
 
-use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use crate::constraints::Touched;
 use crate::dual::coupling::{Coupling, FaceCoupling};
 use crate::error::Result;
 use crate::linalg::vector::LONG;
@@ -14,7 +14,7 @@ use crate::platform::{interrupt, tally};
 
 /// The constrained dofs of one body.
 pub struct Boundary {
-    /// Numbers among all unknowns, ascending.
+    /// Numbers among all unknowns that rows touch, ascending.
     pub dofs: Vec<usize>,
     pub stiffness: Box<dyn Operator + Send>,
 }
@@ -124,10 +124,9 @@ impl Preconditioner {
     }
 }
 
-/// For each range the unknowns that some row constrains, counted from the start of the range.
-pub fn constrained(matrix: &Csr, ranges: &[Range<usize>]) -> Vec<Vec<usize>> {
-    let mut touched = vec![false; matrix.cols];
-    matrix.col.iter().for_each(|&j| touched[j] = true);
-    let of = |range: &Range<usize>| (0..range.len()).filter(|j| touched[range.start + j]).collect();
-    ranges.iter().map(of).collect()
+/// For each body its unknowns among all touched ones that some row constrains.
+pub fn constrained(matrix: &Csr, touched: &Touched, bodies: usize) -> Vec<Vec<usize>> {
+    let mut is_constrained = vec![false; touched.len()];
+    matrix.col.iter().for_each(|&j| is_constrained[j] = true);
+    (0..bodies).map(|p| touched.range(p).filter(|j| is_constrained[*j]).collect()).collect()
 }

@@ -3,6 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `vector`, `twofold`, `array` | loops over vectors, double-double sums, numbers stored by the library or the host |
+//! | `by_body` | vectors over the unknowns of several bodies |
 //! | `random`, `hash` | fixed random numbers, keys of lists |
 //! | `dense` | columns; packed symmetric matrices; pivoted Cholesky, eigenvalues, singular values |
 //! | `sparse` | by rows; symmetric; graphs; Gram matrices |
@@ -11,6 +12,7 @@
 //! | `semidefinite` | systems that may be singular, dense and sparse |
 
 pub mod array;
+pub mod by_body;
 pub mod cholesky;
 pub mod dense;
 pub mod hash;
@@ -22,6 +24,7 @@ pub mod twofold;
 pub mod vector;
 
 pub use array::{Array, Borrowed};
+pub use by_body::ByBody;
 pub use cholesky::{Analysis, Breakdown, Cholesky};
 pub use dense::matrix::Matrix;
 pub use dense::packed::Packed;

@@ -1,5 +1,7 @@
 //! Sums of products in double-double arithmetic: Dot2 of Ogita, Rump, Oishi, "Accurate sum and dot product" (2005).
 
+use crate::linalg::ByBody;
+
 /// A sum as accurate as if computed with 106 bits and rounded once, except if terms over- or underflow.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Twofold {
@@ -47,6 +49,51 @@ impl From<f64> for Twofold {
     }
 }
 
+/// `sum + lost += by`, lost below the rounding of the sum.
+fn add_to(sum: &mut f64, lost: &mut f64, by: f64) {
+    let mut all = Twofold { sum: *sum, lost: *lost };
+    all.add(by);
+    (*sum, *lost) = (all.sum, all.lost);
+}
+
+/// A vector over the unknowns of bodies in two doubles: the sum of `parts`, the second below the rounding of the first.
+#[derive(Debug, Clone)]
+pub struct TwofoldByBody {
+    parts: [ByBody; 2],
+}
+
+impl TwofoldByBody {
+    pub fn parts(&self) -> [&ByBody; 2] {
+        [&self.parts[0], &self.parts[1]]
+    }
+
+    /// Rounded once.
+    pub fn values(&self) -> ByBody {
+        let mut values = self.parts[0].clone();
+        values.add(1.0, &self.parts[1]);
+        values
+    }
+
+    /// Adds a vector on body p.
+    pub fn add_on(&mut self, p: usize, by: &[f64]) {
+        let [sum, lost] = &mut self.parts;
+        let own = sum.on_mut(p).iter_mut().zip(lost.on_mut(p));
+        own.zip(by).for_each(|((sum, lost), by)| add_to(sum, lost, *by));
+    }
+
+    pub fn add(&mut self, by: &ByBody) {
+        by.each().enumerate().for_each(|(p, by)| self.add_on(p, by));
+    }
+}
+
+impl From<ByBody> for TwofoldByBody {
+    fn from(v: ByBody) -> Self {
+        let mut rest = v.clone();
+        rest.change(|rest| *rest = 0.0);
+        Self { parts: [v, rest] }
+    }
+}
+
 /// A vector in two doubles: the sum of `parts`, the second below the rounding of the first.
 #[derive(Debug, Clone)]
 pub struct TwofoldVector {
@@ -72,9 +119,8 @@ impl TwofoldVector {
     }
 
     pub fn add(&mut self, i: usize, by: f64) {
-        let mut sum = Twofold { sum: self.parts[0][i], lost: self.parts[1][i] };
-        sum.add(by);
-        (self.parts[0][i], self.parts[1][i]) = (sum.sum, sum.lost);
+        let [sum, lost] = &mut self.parts;
+        add_to(&mut sum[i], &mut lost[i], by);
     }
 
     pub fn set_to_zero(&mut self, i: usize) {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::body::Body;
 use crate::certificate::led;
-use crate::constraints::RowKind;
+use crate::constraints::{RowKind, Touched};
 use crate::error::Result;
 use crate::linalg::vector::{norm_max, NOISE};
 use crate::model::contents::SolvedModel;
@@ -80,13 +80,13 @@ impl SolvedModel {
 
     /// What holds every unknown, D^, force / length; infinite without stiffness.
     fn held(&self) -> Result<Vec<f64>> {
-        let bodies = self.bodies.iter().map(|given| given.body.k()).zip(&self.offsets);
-        let Some(bodies) =
-            bodies.map(|(k, start)| Some((*start, k?, f64::INFINITY))).collect::<Option<Vec<_>>>()
-        else {
-            return filled(self.sizes().dofs, f64::INFINITY, "the lengths of bodies");
+        let n = self.sizes().dofs;
+        let bodies = self.bodies.iter().map(|given| Some((given.body.k()?, f64::INFINITY)));
+        let Some(bodies) = bodies.collect::<Option<Vec<_>>>() else {
+            return filled(n, f64::INFINITY, "the lengths of bodies");
         };
-        led(&bodies, RowKind::ALL.map(|kind| self.rows(kind)), &|_, _| true, 1.0)
+        let ranges: Vec<_> = (0..bodies.len()).map(|p| self.range(p)).collect();
+        led(&bodies, &Touched::of(&ranges, 0..n), RowKind::ALL.map(|kind| self.rows(kind)), &|_, _| true, 1.0)
     }
 
     /// The accuracy of rows that the host makes from coordinates: `data_accuracy`, raised to what the digits of the

@@ -5,22 +5,34 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::body::Pilots;
-use crate::certificate::Metric;
+use crate::certificate::{everywhere, Metric};
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::Shared;
+use crate::linalg::ByBody;
 use crate::model::{Lengths, Method, Preconditioning, Settings, SolvedModel};
 use crate::numbers::setup::{ASSEMBLED, ASSEMBLED_LUMPED};
 use crate::platform::memory::reserved;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::qp::BetweenSolves;
-use crate::setup::islands::{islands, Island, Members};
+use crate::setup::islands::{Island, Members};
 use crate::setup::operators::Operators;
 use crate::setup::prepared::{Duals, Prepared};
 use crate::setup::ready::Ready;
 use crate::setup::rows::DualRows;
+use crate::setup::separate::islands;
 use crate::setup::whole::Whole;
+
+/// An island without its dual.
+struct WithRows {
+    island: Box<Island>,
+    rows: Arc<DualRows>,
+    /// `D~ / 2^p`
+    metric: Arc<ByBody>,
+    /// C', no unit.
+    compliance: Vec<f64>,
+}
 
 impl Prepared {
     /// True if factors and dual operators are up to date and as the options require.
@@ -50,22 +62,26 @@ impl Prepared {
         for mut island in islands {
             island.refresh(&lengths);
             check_compliance(&island)?;
-            let Metric { values, carried } = metric(model, &island)?;
-            for (&p, range) in island.bodies.iter().zip(&*island.ranges) {
+            let (Metric { values, carried }, metric) = metric(model, &island)?;
+            for (k, &p) in island.bodies.iter().enumerate() {
+                let range = island.touched.range(k);
                 let [first, end] = [range.start, range.end].map(|end| carried.partition_point(|j| *j < end));
                 if first < end {
                     let by = ratio_of_units(model, &island, p);
-                    let metric = values[range.clone()].iter().map(|d| (d * by).min(f64::MAX)).collect();
-                    let carried = carried[first..end].iter().map(|j| j - range.start).collect();
+                    let metric = metric.on(k).iter().map(|d| (d * by).min(f64::MAX)).collect();
+                    let carried = carried[first..end].iter().map(|&j| island.touched.dof(j)).collect();
                     pilots[p] = Some(Box::new(Pilots { metric, carried }));
                 }
             }
             let (mut own, compliance) = DualRows::of(&island, values, coupled(&model.settings))?;
             own.uneven |= !carried.is_empty();
             own.level_gaps(&mut island, &lengths);
-            let counts = Dual::distinct_rows(&island.ranges, &own.matrix, own.first_tangential());
+            let orders: Vec<_> = island.ranges.iter().map(Range::len).collect();
+            let tangential = own.first_tangential();
+            let counts = Dual::distinct_rows(&orders, &island.touched, &own.matrix, tangential);
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
-            with_rows.push((Box::new(island), known.share(own.key(), own, DualRows::eq), compliance));
+            let (own, metric) = (known.share(own.key(), own, DualRows::eq), Arc::new(metric));
+            with_rows.push(WithRows { island: Box::new(island), rows: own, metric, compliance });
         }
         self.carry(pilots);
         watch.phases.ended(Phase::Rows, begun);
@@ -110,24 +126,24 @@ impl Prepared {
     fn dualize(
         &mut self,
         model: &SolvedModel,
-        islands: Vec<(Box<Island>, Arc<DualRows>, Vec<f64>)>,
+        islands: Vec<WithRows>,
         operators: Operators,
         watch: &mut Watch,
     ) -> Result<Duals> {
         let mut drafts = reserved(islands.len(), "groups of bodies")?;
         let (mut island_of, mut number_in) = (vec![0; model.bodies.len()], vec![0; model.bodies.len()]);
-        for (k, (island, rows, _)) in islands.iter().enumerate() {
+        for (k, WithRows { island, rows, .. }) in islands.iter().enumerate() {
             let mut parts = reserved(island.bodies.len(), "groups of bodies")?;
-            for (number, (&p, range)) in island.bodies.iter().zip(&*island.ranges).enumerate() {
+            for (number, &p) in island.bodies.iter().enumerate() {
                 (island_of[p], number_in[p]) = (k, number);
                 let by = ratio_of_units(model, island, p);
                 let own = &mut self.bodies[p];
                 let Some(inverse) = &own.inverse else { continue };
                 let (kplus, kept) = (Arc::clone(&inverse.kplus), own.operator.take());
                 let (size, implicit) = (operators.sizes[p], operators.implicit[p]);
-                parts.push(dual::BodyShare { range: range.clone(), kplus, by, kept, size, implicit });
+                parts.push(dual::BodyShare { kplus, by, kept, size, implicit });
             }
-            drafts.push(Draft::new(parts, &rows.matrix));
+            drafts.push(Draft::new(parts, &island.touched, &rows.matrix));
         }
         let all: Vec<usize> = (0..model.bodies.len()).collect();
         let part = SetupPart {
@@ -141,7 +157,7 @@ impl Prepared {
         watch.every_body(&part, assemble, |p, operator| made[p] = operator)?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
         let mut known = Shared::default();
-        for ((island, rows, compliance), draft) in islands.into_iter().zip(drafts) {
+        for (WithRows { island, rows, metric, compliance }, draft) in islands.into_iter().zip(drafts) {
             let columns = draft.columns();
             self.work.columns_computed += columns.computed;
             self.work.columns_kept += columns.kept;
@@ -157,6 +173,7 @@ impl Prepared {
                 island,
                 dual,
                 rows,
+                metric,
                 whole: whole.map(Box::new),
                 preconditioner: None,
                 kept: BetweenSolves::default(),
@@ -178,14 +195,18 @@ fn ratio_of_units(model: &SolvedModel, island: &Island, body: usize) -> f64 {
     (island.unit / model.bodies[body].body.without(island.unit)).min(2f64.powi(1000))
 }
 
-/// `D~ / 2^p` over the unknowns of an island; for dofs without stiffness D is that of the stiffest dof of their body.
-fn metric(model: &SolvedModel, island: &Island) -> Result<Metric> {
-    let of_body = |(&p, range): (&usize, &Range<usize>)| {
+/// `D~ / 2^p` of an island, where rows touch and over all unknowns; for dofs without stiffness D is that of the stiffest dof of their
+/// body.
+fn metric(model: &SolvedModel, island: &Island) -> Result<(Metric, ByBody)> {
+    let of_body = |&p: &usize| {
         let body = &model.bodies[p].body;
-        Some((range.start, body.k()?, body.without(island.unit)))
+        Some((body.k()?, body.without(island.unit)))
     };
-    let bodies: Vec<_> = island.bodies.iter().zip(&*island.ranges).filter_map(of_body).collect();
-    Metric::of(&bodies, RowKind::ALL.map(|kind| &island.members(kind).rows), &|_, _| true, island.unit)
+    let bodies: Vec<_> = island.bodies.iter().filter_map(of_body).collect();
+    let rows = RowKind::ALL.map(|kind| &island.members(kind).rows);
+    let at_rows = Metric::of(&bodies, &island.touched, rows, &|_, _| true, island.unit)?;
+    let all = everywhere(&bodies, (&island.ranges, &island.touched), &at_rows.values, island.unit);
+    Ok((at_rows, all))
 }
 
 /// Fraction of the setup completed after the dual operators: the rest is for the preconditioner.

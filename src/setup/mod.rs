@@ -14,6 +14,7 @@ mod ready;
 mod rounding;
 mod rows;
 mod scaling;
+mod separate;
 mod whole;
 
 pub use islands::{Island, Members};

@@ -36,7 +36,8 @@ impl Prepared {
         let begun = Instant::now();
         if asked.contains(&Preconditioning::Dirichlet) {
             let boundaries = |ready: &Ready| {
-                let dofs = constrained(&ready.rows.matrix, &ready.island.ranges);
+                let island = &ready.island;
+                let dofs = constrained(&ready.rows.matrix, &island.touched, island.bodies.len());
                 dofs.iter().map(|dofs| dirichlet_bytes(dofs.len())).sum::<usize>()
             };
             duals.operators.check_more(&model.settings, duals.islands.iter().map(boundaries).sum())?;
@@ -83,10 +84,11 @@ fn preconditioner(
     stiffness: BoundaryStiffness,
     stops: &Stops,
 ) -> Result<Preconditioner> {
-    let Island { bodies, ranges, unit, .. } = &*ready.island;
-    let constrained = constrained(&ready.rows.matrix, ranges);
-    let boundaries = threads::run(model.threads(), ranges.len(), |k| {
-        let (p, local) = (bodies[k], &constrained[k]);
+    let Island { bodies, touched, unit, .. } = &*ready.island;
+    let constrained = constrained(&ready.rows.matrix, touched, bodies.len());
+    let boundaries = threads::run(model.threads(), bodies.len(), |k| {
+        let (p, dofs) = (bodies[k], &constrained[k]);
+        let local: &[usize] = &dofs.iter().map(|&j| touched.dof(j)).collect::<Vec<_>>();
         let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
         stops.check()?;
         tally::costly();
@@ -96,7 +98,7 @@ fn preconditioner(
             Stiffness::Assembled(_) => Err(missing()),
         };
         let stiffness = made.map_err(|e| e.body(p))?;
-        Ok(Boundary { dofs: local.iter().map(|j| j + ranges[k].start).collect(), stiffness })
+        Ok(Boundary { dofs: dofs.clone(), stiffness })
     })?;
     let (rows, compliance) = (&ready.rows.matrix, &ready.dual.compliance);
     Preconditioner::new(rows, compliance[..rows.rows()].to_vec(), &ready.rows.metric, boundaries)

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use crate::dual::{Dual, Preconditioner};
 use crate::error::Result;
+use crate::linalg::vector::weighted_norm;
+use crate::linalg::ByBody;
 use crate::model::Preconditioning;
 use crate::platform::memory::reserved;
 use crate::platform::threads;
@@ -22,6 +24,8 @@ pub struct Ready {
     pub island: Box<Island>,
     pub dual: Arc<Dual>,
     pub rows: Arc<DualRows>,
+    /// `D~ / 2^p` over the unknowns.
+    pub metric: Arc<ByBody>,
     /// The island in terms of the host's bodies, if its own bodies are pieces of them.
     pub whole: Option<Box<Whole>>,
     /// The preconditioner and its option.
@@ -48,9 +52,9 @@ impl Ready {
     }
 
     /// `B_p K_p+ f_p` of every body.
-    pub fn moved(&self, threads: usize, f: &[f64]) -> Result<Vec<Vec<f64>>> {
+    pub fn moved(&self, threads: usize, f: &ByBody) -> Result<Vec<Vec<f64>>> {
         let on_caller = |p: usize| self.dual.solves_on_caller(p);
-        threads::run_apart(threads, self.dual.bodies(), on_caller, |p| self.dual.moved(p, f))
+        threads::run_apart(threads, self.dual.bodies(), on_caller, |p| self.dual.moved(p, f.on(p)))
     }
 
     /// `sum_p |B_p u_p|`, row by row.
@@ -67,13 +71,51 @@ impl Ready {
         self.dual.distances(moved, x, alpha, &in_parallel)
     }
 
-    /// `K+ f`, over the unknowns of the island.
-    pub fn displacement(&self, threads: usize, f: &[f64]) -> Result<Vec<f64>> {
+    /// `K+ f`
+    pub fn displacement(&self, threads: usize, f: &ByBody) -> Result<ByBody> {
         let on_caller = |p: usize| self.dual.solves_on_caller(p);
-        let displacement = |p| self.dual.displacement(p, f);
+        let displacement = |p| self.dual.displacement(p, f.on(p));
         let bodies = threads::run_apart(threads, self.dual.bodies(), on_caller, displacement)?;
-        let mut all = reserved(f.len(), "a displacement")?;
+        let mut all = reserved(self.island.unknowns(), "a displacement")?;
         bodies.iter().for_each(|u| all.extend_from_slice(u));
-        Ok(all)
+        Ok(ByBody::of(&self.island.ranges, all))
+    }
+
+    /// `|f|_{D^-1}` of body p, in units of 2^p.
+    pub fn force(&self, p: usize, f: &[f64]) -> f64 {
+        let metric = self.metric.on(p);
+        weighted_norm(f, |j| 1.0 / metric[j])
+    }
+
+    /// `|u|_D` of body p.
+    pub fn length(&self, p: usize, u: &[f64]) -> f64 {
+        let metric = self.metric.on(p);
+        weighted_norm(u, |j| metric[j])
+    }
+
+    /// `|u|_D`
+    pub fn length_of_all(&self, u: &ByBody) -> f64 {
+        let own: Vec<f64> = u.each().enumerate().map(|(p, u)| self.length(p, u)).collect();
+        weighted_norm(&own, |_| 1.0)
+    }
+
+    /// `|f|_{D^-1}`
+    pub fn force_of_all(&self, f: &ByBody) -> f64 {
+        let own: Vec<f64> = f.each().enumerate().map(|(p, f)| self.force(p, f)).collect();
+        weighted_norm(&own, |_| 1.0)
+    }
+
+    /// `R a`
+    pub fn rigid_motion(&self, a: &[f64]) -> ByBody {
+        let mut v = ByBody::of(&self.island.ranges, vec![0.0; self.island.unknowns()]);
+        (0..self.dual.bodies()).for_each(|p| self.dual.add_rigid_motion(p, a, v.on_mut(p)));
+        v
+    }
+
+    /// Subtracts `B'x` from a load, through the rows and forces of the host: if these cancel, the result is exactly 0.
+    pub fn take_forces(&self, x: &[f64], load: &mut ByBody) {
+        let DualRows { scaled, scaling, .. } = &*self.rows;
+        let forces = scaling.decoupling.solve_transposed(x.to_vec());
+        self.island.touched.change(load, |load| scaled.mul_transposed_add(-1.0, &forces, load));
     }
 }

@@ -19,7 +19,7 @@ pub struct DualRows {
     pub scaled: Arc<Csr>,
     /// B' of `scaled = L B'`, from which F and G are formed.
     pub matrix: Arc<Csr>,
-    /// `D / 2^p` over the unknowns of the island.
+    /// `D~ / 2^p` at the unknowns that rows touch.
     pub metric: Vec<f64>,
     pub scaling: Scaling,
     /// L = I: the rows are not decoupled.
@@ -38,7 +38,7 @@ fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
         let mut shares: Vec<(usize, f64)> = Vec::new();
         for (j, v) in rows.row(i) {
             let share = v * v / metric[j];
-            let body = island.body_of(j);
+            let body = island.touched.body_of(j);
             match shares.last_mut() {
                 Some(last) if last.0 == body => last.1 += share,
                 _ => shares.push((body, share)),
@@ -60,7 +60,7 @@ fn one_scale(scales: &mut [f64], normal: Option<f64>) {
 
 impl DualRows {
     /// The rows of an island, and the diagonal of C' with `2^p S C S = L C'L'`: 1/k without unit, 0 for rigid rows; `metric`:
-    /// D / 2^p over its unknowns. `coupled` rows are those of the host, only scaled.
+    /// D~ / 2^p at the unknowns that they touch. `coupled` rows are those of the host, only scaled.
     pub fn of(island: &Island, metric: Vec<f64>, coupled: bool) -> Result<(Self, Vec<f64>)> {
         let mut all = Csr::empty(metric.len());
         let (mut scale, mut compliances) = (Vec::new(), Vec::new());
@@ -143,11 +143,6 @@ impl DualRows {
 
     pub fn groups(&self) -> usize {
         self.scaling.grouping.leaders.len()
-    }
-
-    /// Subtracts `B'x` from a load, through the rows and forces of the host: if these cancel, the result is exactly 0.
-    pub fn take_forces(&self, x: &[f64], load: &mut [f64]) {
-        self.scaled.mul_transposed_add(-1.0, &self.scaling.decoupling.solve_transposed(x.to_vec()), load);
     }
 
     /// Kind of the multiplier of a group.

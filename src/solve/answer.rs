@@ -196,7 +196,7 @@ impl Answer {
 
     fn leave_out(&mut self, model: &SolvedModel, ready: &Ready) {
         let island = &ready.island;
-        island.scatter(model, &vec![f64::NAN; island.unknowns()], &mut self.u);
+        island.bodies.iter().for_each(|&p| self.u[model.range(p)].fill(f64::NAN));
         let none = |members: &Members| vec![f64::NAN; members.numbers.len()];
         island.contact.scatter(&none(&island.contact), &mut self.lambda);
         island.equalities.scatter(&none(&island.equalities), &mut self.mu);
@@ -230,6 +230,7 @@ pub fn named(model: &SolvedModel, ready: &Ready, own: Certificate) -> Certificat
 /// neither does.
 fn states(ready: &Ready, answer: &Recovered, zero: &[RowJudgement]) -> Vec<RowState> {
     let (Recovered { u, lambda, .. }, rows) = (answer, &ready.island.contact.rows);
+    let u = &ready.island.touched.at(u)[..];
     let state = |(i, zero): (usize, &RowJudgement)| {
         if lambda[i] > zero.force {
             RowState::Closed

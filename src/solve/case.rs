@@ -4,6 +4,7 @@ use crate::certificate::{BodyData, Data};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::norm_max;
+use crate::linalg::ByBody;
 use crate::model::SolvedModel;
 use crate::platform::memory::zeros;
 use crate::setup::{Island, Prepared, Ready};
@@ -34,7 +35,7 @@ impl<'a> Case<'a> {
     }
 
     /// A motion of the island over all unknowns of the model, its largest entry 1 in size, and the body and dof of this entry.
-    pub fn fastest(&self, own: &[f64]) -> Result<(Vec<f64>, usize, usize)> {
+    pub fn fastest(&self, own: &ByBody) -> Result<(Vec<f64>, usize, usize)> {
         let mut v = zeros(self.model.sizes().dofs, "a motion")?;
         self.island().scatter(self.model, own, &mut v);
         let largest = norm_max(&v);
@@ -49,11 +50,10 @@ impl<'a> Case<'a> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
         let (model, island) = (self.model, self.island());
         let mut bodies = Vec::with_capacity(island.bodies.len());
-        for (&p, range) in island.bodies.iter().zip(&*island.ranges) {
+        for &p in &island.bodies {
             let body = &model.bodies[p].body;
             let inverse = self.prepared.inverse(model, p).ok_or_else(missing)?;
             bodies.push(BodyData {
-                start: range.start,
                 stiffness: body.k().ok_or_else(missing)?,
                 load: body.load.as_deref(),
                 null_space: &inverse.kplus.null_space,
@@ -64,6 +64,7 @@ impl<'a> Case<'a> {
         }
         let (limit, accuracy) = (model.settings.certificate_tolerance, model.settings.data_accuracy);
         let [contact, equalities, tangential] = RowKind::ALL.map(|kind| &island.members(kind).rows);
-        Ok(Data { bodies, contact, equalities, tangential, nodes: &island.friction.nodes, limit, accuracy })
+        let (ranges, touched, nodes) = (&island.ranges, &*island.touched, &island.friction.nodes[..]);
+        Ok(Data { bodies, ranges, touched, contact, equalities, tangential, nodes, limit, accuracy })
     }
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::certificate::Judgement;
 use crate::error::{Kind, Result};
 use crate::linalg::vector::norm;
+use crate::linalg::ByBody;
 use crate::numbers::solve::SETTLED;
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
@@ -55,7 +56,7 @@ pub struct Certifier<'a> {
 /// A point (x, alpha) of the dual problem whose answer has passed.
 struct Accepted {
     point: (Vec<f64>, Vec<f64>),
-    deformed: Vec<f64>,
+    deformed: ByBody,
     recovered: Recovered,
     judgement: Judgement,
 }
@@ -88,10 +89,11 @@ impl<'a> Certifier<'a> {
     }
 
     /// The rows left out that the displacement u violates.
-    fn beyond(&self, u: &[f64]) -> Vec<usize> {
+    fn beyond(&self, u: &ByBody) -> Vec<usize> {
+        let u = self.recovery.data.touched.at(u);
         let (rows, gaps) = (&self.recovery.ready.rows.scaled, &self.recovery.scaled.gaps.value);
         let far = self.assumed.far.iter().enumerate().filter(|(_, far)| **far);
-        far.map(|(i, _)| i).filter(|&i| rows.row_dot(i, u) > gaps[i]).collect()
+        far.map(|(i, _)| i).filter(|&i| rows.row_dot(i, &u) > gaps[i]).collect()
     }
 
     /// The answer of the point is kept if it passes.
@@ -281,7 +283,7 @@ pub(super) mod tests {
             for (x, alpha) in [([0.0, 0.0], 0.0), ([2.0, 0.0], -7.0), ([0.5, 1.5], 2.0)] {
                 let recovery = &judge.recovery;
                 let u = recovery.recover(&recovery.deformed(&x).unwrap(), &x, &[alpha]).u;
-                let moved = [0, 1].map(|i| recovery.ready.rows.matrix.row_dot(i, &u));
+                let moved = [0, 1].map(|i| recovery.ready.rows.matrix.row_dot(i, u.in_sequence()));
                 let expected = norm(&moved) + norm(&recovery.scaled.gaps.dual).min(norm(&moved));
                 let scale = judge.scale(&x, &[alpha]).unwrap();
                 assert!((scale - expected).abs() <= 1e-14 * expected, "{alpha}");

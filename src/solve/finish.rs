@@ -113,9 +113,10 @@ impl<'a, 'b> Finish<'a, 'b> {
             }
         }
         let Some(faces) = self.sparse()? else { return Ok(()) };
-        let Some((active, inside)) = faces.inside(self.recovery.scaled)? else { return Ok(()) };
+        let Some(inside) = faces.inside(self.recovery.scaled)? else { return Ok(()) };
         if Rung::Interior.is_tried() {
-            self.follow(active, SplitPoint::inside(self.recovery, &inside), (dense, sets))?;
+            let point = SplitPoint::inside(self.recovery, &inside);
+            self.follow(inside.active, point, (dense, sets))?;
         }
         self.done.inside = (!self.passes()).then_some(inside.force);
         Ok(())
@@ -270,6 +271,7 @@ fn is_no_worse(new: &Certificate, old: &Certificate) -> bool {
 mod tests {
     use super::*;
     use crate::certificate::Entry;
+    use crate::linalg::ByBody;
     use crate::qp::Solution;
     use crate::solve::certifier::tests::two_springs;
 
@@ -283,7 +285,7 @@ mod tests {
                 assert!(finish(recovery, &mut ending, Effort::All).unwrap().replaced, "{x:?}");
                 assert_eq!(ending.solution.x, [2.0, 0.0]);
                 assert_eq!(
-                    (ending.recovered.u.as_slice(), ending.recovered.lambda.as_slice()),
+                    (ending.recovered.u.in_sequence(), ending.recovered.lambda.as_slice()),
                     ([1.0, 1.0].as_slice(), [2.0, 0.0].as_slice())
                 );
             }
@@ -296,7 +298,8 @@ mod tests {
             let recovery = &judge.recovery;
             for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
                 let mut ending = recovery.ending(solved.clone()).unwrap();
-                let mut point = SplitPoint::at_origin(ending.recovered.u.clone(), solved.x.clone(), 0, 1.0);
+                let mut point =
+                    SplitPoint::at_origin(recovery, ending.recovered.u.clone(), (solved.x.clone(), 0), 1.0);
                 point.hold(&[0, 1].map(|i| !rows.contains(&i)));
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
@@ -323,7 +326,8 @@ mod tests {
     fn a_force_that_rounding_has_made_negative_is_none_and_its_row_leaves() {
         two_springs(0.0, |judge, _| {
             let recovery = &judge.recovery;
-            let point = SplitPoint::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0, 1.0);
+            let u = ByBody::of(recovery.data.ranges, vec![1.0, 1.0]);
+            let point = SplitPoint::at_origin(recovery, u, (vec![2.0, -1e-20], 0), 1.0);
             assert_eq!(point.forces(&[true, true]).values(), [2.0, 0.0]);
             assert_eq!(point.active(recovery), [false, true]);
         });
@@ -334,9 +338,10 @@ mod tests {
     fn a_row_joins_as_soon_as_its_gap_exceeds_the_rounding_of_its_own_data() {
         two_springs(0.0, |judge, _| {
             for (beyond, open) in [(0.0, true), (1e-14, false), (-1e-14, true)] {
-                let u = vec![1.0, 2.0 + beyond];
-                let point = SplitPoint::at_origin(u, vec![2.0, 0.0], 0, 1.0);
-                assert_eq!(point.active(&judge.recovery), [false, open], "{beyond}");
+                let recovery = &judge.recovery;
+                let u = ByBody::of(recovery.data.ranges, vec![1.0, 2.0 + beyond]);
+                let point = SplitPoint::at_origin(recovery, u, (vec![2.0, 0.0], 0), 1.0);
+                assert_eq!(point.active(recovery), [false, open], "{beyond}");
             }
         });
     }

@@ -1,33 +1,31 @@
 //! Which rows carry a force that holds a motion, and which rows carry only rounding.
 
-use std::ops::Range;
-
-use crate::certificate::{Candidate, NOISE};
+use crate::certificate::NOISE;
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::random::scattered;
-use crate::linalg::vector::weighted_norm;
-use crate::linalg::{Csr, Matrix, Operator};
+use crate::linalg::{ByBody, Csr, Matrix, Operator};
 use crate::numbers::rounding;
 use crate::numbers::solve::SMALL_FORCE;
 use crate::qp::AnswerFace;
 use crate::setup::Ready;
 
+const WHAT: &str = "the forces of rows";
+
 /// Rows of the dual that hold nothing: groups of contact rows whose forces are all rounding, their own or, beside uneven rows, that of
-/// resultants, and tangential rows of nodes whose friction bound is 0. `load`: loads of all unknowns, force; `coarse`: G'.
-pub fn without_force(ready: &Ready, coarse: &Csr, load: &[f64], answer: Candidate) -> Result<Vec<bool>> {
-    let (lambda, rows, island) = (answer.lambda, &ready.rows, &ready.island);
-    let mut push = vec![0.0; load.len()];
-    for kind in RowKind::ALL {
-        island.members(kind).rows.matrix.mul_transposed_add(1.0, answer.forces(kind), &mut push);
-    }
-    let size = |v: &[f64], range: &Range<usize>| {
-        weighted_norm(&v[range.clone()], |j| 1.0 / rows.metric[range.start + j])
-    };
-    let everywhere = size(load, &(0..load.len())).hypot(size(&push, &(0..load.len())));
-    let sizes: Vec<[f64; 2]> =
-        island.ranges.iter().map(|range| [size(load, range), size(&push, range)]).collect();
+/// resultants, and tangential rows of nodes whose friction bound is 0. `load`: loads, `forces`: of the rows of each kind, force;
+/// `coarse`: G'.
+pub fn without_force(ready: &Ready, coarse: &Csr, load: &ByBody, forces: [&[f64]; 3]) -> Result<Vec<bool>> {
+    let (lambda, rows, island) = (forces[0], &ready.rows, &ready.island);
+    let mut push = ByBody::zeros(&island.ranges, WHAT)?;
+    island.touched.change(&mut push, |push| {
+        let kinds = RowKind::ALL.into_iter().zip(forces);
+        kinds.for_each(|(kind, f)| island.members(kind).rows.matrix.mul_transposed_add(1.0, f, push));
+    });
+    let of_body = |p: usize| [ready.force(p, load.on(p)), ready.force(p, push.on(p))];
+    let sizes: Vec<[f64; 2]> = (0..island.bodies.len()).map(of_body).collect();
+    let everywhere = ready.force_of_all(load).hypot(ready.force_of_all(&push));
     let of_bodies = |part: f64, idle: f64| -> Vec<f64> {
         let nothing = |[own, push]: &[f64; 2]| {
             let idle = if *own == 0.0 { idle * everywhere } else { 0.0 };
@@ -40,7 +38,7 @@ pub fn without_force(ready: &Ready, coarse: &Csr, load: &[f64], answer: Candidat
     let (rounding, weak) = (of_bodies(rounding::METHOD, NOISE), of_bodies(SMALL_FORCE, SMALL_FORCE));
     for (i, (group, _)) in rows.scaling.grouping.members().filter(|(i, _)| *i < rows.contact) {
         let exceeds = |nothing: &[f64]| {
-            let bodies = island.contact.rows.matrix.row(i).map(|(j, _)| nothing[island.body_of(j)]);
+            let bodies = island.contact.rows.matrix.row(i).map(|(j, _)| nothing[island.touched.body_of(j)]);
             lambda[i] > rows.scaling.scale[i] * bodies.fold(f64::INFINITY, f64::min)
         };
         held[group] &= !exceeds(&rounding);
@@ -65,9 +63,9 @@ pub fn without_force(ready: &Ready, coarse: &Csr, load: &[f64], answer: Candidat
         return Ok(held);
     }
     let (dual, unit) = (&ready.dual, island.unit);
-    let load: Vec<f64> = load.iter().map(|f| f / unit).collect();
-    push.iter_mut().for_each(|push| *push /= unit);
-    let [own, by_rows] = [&load, &push].map(|f| dual.sizes_of_loads(f, &rows.metric));
+    let load = load.map(|f| f / unit);
+    push.change(|push| *push /= unit);
+    let [own, by_rows] = [&load, &push].map(|f| dual.sizes_of_loads(f, &ready.metric));
     let terms: Vec<f64> = own.iter().zip(by_rows).map(|(own, by_rows)| own + by_rows).collect();
     if is_carried {
         let free = AnswerFace::new(coarse, &dual.blocks, &small, dual.rounding())?.undetermined()?;

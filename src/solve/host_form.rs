@@ -13,10 +13,10 @@ pub fn host_form(case: Case, gaps: &Gaps) -> Result<HostForm> {
     let mut scale: Vec<f64> = gaps.holder.iter().map(|&i| ready.rows.scaling.scale[i]).collect();
     scale.resize(ready.dual.order(), 1.0);
     let mut basis = Vec::with_capacity(ready.island.bodies.len());
-    let Island { bodies, ranges, unit, .. } = &*ready.island;
-    for (k, (&p, range)) in bodies.iter().zip(&**ranges).enumerate() {
+    let Island { bodies, unit, .. } = &*ready.island;
+    for (k, &p) in bodies.iter().enumerate() {
         let own = unit / case.prepared.inverse(case.model, p).map_or(*unit, |inverse| inverse.unit);
-        let metric: Vec<f64> = ready.rows.metric[range.clone()].iter().map(|d| own * d).collect();
+        let metric: Vec<f64> = ready.metric.on(k).iter().map(|d| own * d).collect();
         let mut t = change_of_basis(case, p, &metric)?;
         t.data.iter_mut().for_each(|v| *v *= ready.dual.size_of(k));
         basis.push((ready.dual.modes_of(k), t));

@@ -133,7 +133,7 @@ fn solve_held(
 pub fn scaled(case: Case) -> Result<Scaled> {
     let ready = case.ready;
     let mut load = ready.island.loads(case.model)?;
-    load.iter_mut().for_each(|f| *f /= ready.island.unit);
+    load.change(|f| *f /= ready.island.unit);
     interrupt::check()?;
     let moved = ready.moved(case.threads(), &load)?;
     let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);

@@ -15,6 +15,7 @@
 
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::vector::{axpy, dot, NOISE};
+use crate::linalg::ByBody;
 use crate::numbers::solve::SAME_ENERGY;
 use crate::qp::friction::unheld;
 use crate::qp::{Qp, Rung, Solution, Verdict};
@@ -279,13 +280,13 @@ impl<'a> Search<'a, '_> {
         Ok(Step { b, x, is_trial: true })
     }
 
-    fn displacements(&self, x: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+    fn displacements(&self, x: &[f64], alpha: &[f64]) -> Result<ByBody> {
         Ok(self.recovery.recover(&self.recovery.deformed(x)?, x, alpha).u)
     }
 }
 
 /// The error for a motion along which the energy falls while closed rows stay closed, with the body that moves most.
-fn indefinite(case: Case, own: &[f64], rate: f64) -> Result<Error> {
+fn indefinite(case: Case, own: &ByBody, rate: f64) -> Result<Error> {
     let (v, body, dof) = case.fastest(own)?;
     let what = format!(
         "the answer is no minimum: K has negative stiffness along this motion, fastest at this dof, {rate:.1e} times the \

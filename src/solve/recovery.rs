@@ -7,13 +7,14 @@ use crate::certificate::{certify, BodyData, Candidate, Data, Judgement, NOISE};
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{axpy, weighted_norm};
+use crate::linalg::vector::axpy;
+use crate::linalg::ByBody;
 use crate::model::SolvedModel;
 use crate::numbers::linalg::WEAK;
 use crate::platform::interrupt;
-use crate::platform::memory::{copied, zeros};
+use crate::platform::memory::zeros;
 use crate::qp::{Direct, Qp, Solution};
-use crate::setup::Ready;
+use crate::setup::{Island, Ready};
 use crate::solve::case::Case;
 use crate::solve::scaled::Scaled;
 use crate::solve::sparse_face::SparseFaces;
@@ -21,7 +22,7 @@ use crate::solve::sparse_face::SparseFaces;
 /// Displacements and multipliers in the units of the host.
 #[derive(Clone)]
 pub struct Recovered {
-    pub u: Vec<f64>,
+    pub u: ByBody,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
     /// Tangential forces.
@@ -57,7 +58,7 @@ impl<'a> Faces<'a> {
 pub struct Ending {
     pub solution: Solution,
     /// u without its motion by R, length.
-    pub deformed: Vec<f64>,
+    pub deformed: ByBody,
     pub recovered: Recovered,
     pub judgement: Judgement,
 }
@@ -83,7 +84,7 @@ impl<'a> Recovery<'a> {
     pub fn new(case: Case<'a>, scaled: &'a Scaled, faces: Faces<'a>) -> Result<Self> {
         let (mut data, ready) = (case.data()?, case.ready);
         if let Some(load) = scaled.unheld.as_ref().and_then(|taken| taken.load.as_ref()) {
-            data.bodies.iter_mut().for_each(|body| body.load = Some(&load[body.range()]));
+            data.bodies.iter_mut().zip(load.each()).for_each(|(body, load)| body.load = Some(load));
         }
         let is_soft = |p: &usize| {
             let inverse = case.prepared.inverse(case.model, *p);
@@ -113,27 +114,26 @@ impl<'a> Recovery<'a> {
 
     /// (17) and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups. `deformed`: u without its
     /// rigid motion.
-    pub fn recover(&self, deformed: &[f64], x: &[f64], alpha: &[f64]) -> Recovered {
-        let dual = &self.ready.dual;
-        let mut u = dual.rigid_motion(&dual.balanced(x, alpha), deformed.len());
-        axpy(1.0, deformed, &mut u);
+    pub fn recover(&self, deformed: &ByBody, x: &[f64], alpha: &[f64]) -> Recovered {
+        let mut u = self.ready.rigid_motion(&self.ready.dual.balanced(x, alpha));
+        u.add(1.0, deformed);
         self.with_forces(u, &[x])
     }
 
     /// `K+ (f - B'x)`
-    pub fn deformed(&self, x: &[f64]) -> Result<Vec<f64>> {
-        let mut load = copied(&self.scaled.load, "a displacement")?;
-        self.ready.rows.take_forces(x, &mut load);
+    pub fn deformed(&self, x: &[f64]) -> Result<ByBody> {
+        let mut load = self.scaled.load.copied("a displacement")?;
+        self.ready.take_forces(x, &mut load);
         self.inverse(&load)
     }
 
     /// `K+ f`
-    pub fn inverse(&self, load: &[f64]) -> Result<Vec<f64>> {
+    pub fn inverse(&self, load: &ByBody) -> Result<ByBody> {
         self.ready.displacement(self.threads, load)
     }
 
     /// The answer with displacements u and forces of x, the sum of `parts`: L'^-1 may leave a small difference of large x.
-    pub fn with_forces(&self, u: Vec<f64>, parts: &[&[f64]]) -> Recovered {
+    pub fn with_forces(&self, u: ByBody, parts: &[&[f64]]) -> Recovered {
         let [mut lambda, mut mu, mut tangential] = self.forces_of_host(parts[0]);
         for x in &parts[1..] {
             let more = self.forces_of_host(x);
@@ -155,33 +155,38 @@ impl<'a> Recovery<'a> {
     }
 
     /// `f - K u - B'lambda - H'mu - T'lambda_t` in units of 2^p; u is the sum of `motions`, x that of `forces`.
-    pub fn load_left(&self, motions: &[&[f64]], forces: &[&[f64]]) -> Result<Vec<f64>> {
-        let unit = self.ready.island.unit;
-        let mut left: Vec<Twofold> = self.scaled.load.iter().map(|&f| f.into()).collect();
-        for (body, u) in self.data.bodies.iter().flat_map(|body| motions.iter().map(move |u| (body, u))) {
-            body.stiffness.add_twofold(-1.0 / unit, &u[body.range()], &mut left[body.range()])?;
-        }
-        for (kind, forces) in forces.iter().flat_map(|x| RowKind::ALL.into_iter().zip(self.forces_of_host(x)))
-        {
-            let rows = self.data.rows(kind);
-            for (i, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
-                rows.matrix.row(i).for_each(|(j, v)| left[j].add_product(-v, force / unit));
+    pub fn load_left(&self, motions: &[&ByBody], forces: &[&[f64]]) -> Result<ByBody> {
+        let (Island { unit, touched, .. }, data) = (&*self.ready.island, &self.data);
+        let mut left = self.scaled.load.map(Twofold::from);
+        for (p, body) in data.bodies.iter().enumerate() {
+            for u in motions {
+                body.stiffness.add_twofold(-1.0 / unit, u.on(p), left.on_mut(p))?;
             }
         }
-        Ok(left.into_iter().map(Twofold::value).collect())
+        touched.change(&mut left, |left| {
+            let forces = forces.iter().flat_map(|x| RowKind::ALL.into_iter().zip(self.forces_of_host(x)));
+            for (kind, forces) in forces {
+                let rows = data.rows(kind);
+                for (i, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
+                    rows.matrix.row(i).for_each(|(j, v)| left[j].add_product(-v, force / unit));
+                }
+            }
+        });
+        Ok(left.map(Twofold::value))
     }
 
     /// `c + C x - B u` of the rows of the dual, u being the sum of `motions`, x that of `forces`; 0 for springs of bodies,
     /// which are part of K.
-    pub fn gaps_left(&self, motions: &[&[f64]], forces: &[&[f64]]) -> Vec<f64> {
+    pub fn gaps_left(&self, motions: &[&ByBody], forces: &[&[f64]]) -> Vec<f64> {
         let (rows, order) = (&self.ready.rows, forces[0].len());
         let forces: Vec<_> = forces.iter().map(|x| self.forces_of_host(x)).collect();
+        let motions: Vec<_> = motions.iter().map(|u| self.data.touched.at(u)).collect();
         let mut left = rows.scaling.lengths_to_dual(&self.scaled.gaps.holder, |holder| {
             let (kind, i) = self.ready.island.kind_and_place(holder);
             let set = self.data.rows(kind);
             let mut left = Twofold::from(set.rhs[i]);
             forces.iter().for_each(|x| left.add_product(set.compliance[i], x[kind as usize][i]));
-            for u in motions {
+            for u in &motions {
                 set.matrix.row(i).for_each(|(j, v)| left.add_product(-v, u[j]));
             }
             left.value()
@@ -191,30 +196,30 @@ impl<'a> Recovery<'a> {
     }
 
     /// Per body: whether a motion is larger than v by a factor, and K resists it by rounding alone.
-    pub fn travels(&self, motion: &[f64], v: &[f64], factor: f64) -> Result<Vec<bool>> {
-        let length =
-            |body: &BodyData, u: &[f64]| weighted_norm(u, |i| self.ready.rows.metric[body.start + i]);
-        let travels = |body: &BodyData| {
-            let (motion, v) = (&motion[body.range()], &v[body.range()]);
-            Ok(length(body, motion) > factor * length(body, v) && is_unresisted(body, motion)?)
+    pub fn travels(&self, motion: &ByBody, v: &ByBody, factor: f64) -> Result<Vec<bool>> {
+        let travels = |(p, body): (usize, &BodyData)| {
+            let (motion, v) = (motion.on(p), v.on(p));
+            Ok(self.ready.length(p, motion) > factor * self.ready.length(p, v)
+                && is_unresisted(body, motion)?)
         };
-        self.data.bodies.iter().map(travels).collect()
+        self.data.bodies.iter().enumerate().map(travels).collect()
     }
 
-    /// R'D u of a body.
-    pub fn rigid_part(&self, body: &BodyData, u: &[f64]) -> Vec<f64> {
-        let (metric, by) = (&self.ready.rows.metric[body.range()], self.ready.island.unit / body.unit);
+    /// R'D u of body p.
+    pub fn rigid_part(&self, p: usize, u: &[f64]) -> Vec<f64> {
+        let (body, metric) = (&self.data.bodies[p], self.ready.metric.on(p));
+        let by = self.ready.island.unit / body.unit;
         let weighted: Vec<f64> = u.iter().zip(metric).map(|(u, d)| by * d * u).collect();
         body.null_space.mul_transposed(&weighted)
     }
 
     /// Amplitudes over the modes of the dual of the rigid part of u.
-    pub fn amplitudes(&self, u: &[f64]) -> Vec<f64> {
+    pub fn amplitudes(&self, u: &ByBody) -> Vec<f64> {
         let dual = &self.ready.dual;
         let mut all = vec![0.0; dual.modes()];
-        for (k, body) in self.data.bodies.iter().enumerate() {
-            let own = self.rigid_part(body, &u[body.range()]);
-            all[dual.modes_of(k)].iter_mut().zip(own).for_each(|(a, own)| *a = own * dual.size_of(k));
+        for (p, u) in u.each().enumerate() {
+            let own = self.rigid_part(p, u);
+            all[dual.modes_of(p)].iter_mut().zip(own).for_each(|(a, own)| *a = own * dual.size_of(p));
         }
         all
     }
@@ -251,14 +256,18 @@ fn is_unresisted(body: &BodyData, w: &[f64]) -> Result<bool> {
 
 #[cfg(test)]
 mod tests {
+    use crate::linalg::ByBody;
     use crate::solve::certifier::tests::two_springs;
 
     /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2.
     #[test]
     fn what_is_left_keeps_its_digits_where_large_numbers_cancel() {
         two_springs(0.0, |judge, _| {
-            assert_eq!(judge.recovery.load_left(&[&[1e16, 0.0]], &[&[-1e16, 0.0]]).unwrap(), [3.0, 1.0]);
-            assert_eq!(judge.recovery.gaps_left(&[&[1e16, 1.0], &[-1e16, 0.0]], &[&[0.0; 2]]), [1.0, 1.0]);
+            let of = |u: [f64; 2]| ByBody::of(&judge.recovery.ready.island.ranges, u.to_vec());
+            let left = judge.recovery.load_left(&[&of([1e16, 0.0])], &[&[-1e16, 0.0]]).unwrap();
+            assert_eq!(left, of([3.0, 1.0]));
+            let motions = [of([1e16, 1.0]), of([-1e16, 0.0])];
+            assert_eq!(judge.recovery.gaps_left(&motions.each_ref(), &[&[0.0; 2]]), [1.0, 1.0]);
         });
     }
 }

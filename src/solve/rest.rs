@@ -1,11 +1,11 @@
 //! If the forces of an answer leave motions free, the library returns the answer of least travel.
 
 use crate::certificate::BodyData;
+use crate::constraints::RowKind;
 use crate::error::{Kind, Result};
-use crate::linalg::Matrix;
+use crate::linalg::{ByBody, Matrix};
 use crate::platform::interrupt;
 use crate::qp::{AnswerFace, Solution, Verdict};
-use crate::setup::Island;
 use crate::solve::held::without_force;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
 use crate::solve::travel::{travel, Moving, OpenMotions, Rest};
@@ -62,8 +62,9 @@ impl<'a> Recovery<'a> {
 
     /// Rows of the dual whose forces hold nothing.
     pub fn without_force(&self, answer: &Recovered) -> Result<Vec<bool>> {
-        let load: Vec<f64> = self.scaled.load.iter().map(|f| f * self.ready.island.unit).collect();
-        without_force(self.ready, self.faces.qp.g_transposed, &load, answer.view())
+        let load = self.scaled.load.map(|f| f * self.ready.island.unit);
+        let forces = RowKind::ALL.map(|kind| answer.view().forces(kind));
+        without_force(self.ready, self.faces.qp.g_transposed, &load, forces)
     }
 
     /// The answer of least travel, with rows without force `held`; none if rows resist every motion. The distance
@@ -101,19 +102,17 @@ impl<'a> Recovery<'a> {
     /// The place of least travel along the free motions; none if rounding leaves no such place.
     fn way_to_rest(
         &self,
-        (deformed, amplitudes): (&[f64], Vec<f64>),
+        (deformed, amplitudes): (&ByBody, Vec<f64>),
         lambda: &[f64],
         mut free: Matrix,
     ) -> Result<Option<Rest>> {
-        let (dual, Island { ranges, .. }) = (&self.ready.dual, &*self.ready.island);
+        let dual = &self.ready.dual;
         for j in 0..free.cols {
             let own = dual.amplitudes(free.col(j));
             free.col_mut(j).copy_from_slice(&own);
         }
-        let mut grounded = vec![false; deformed.len()];
-        self.data.grounded().for_each(|j| grounded[j] = true);
         let moving = |(k, body): (usize, &BodyData<'a>)| Moving {
-            unknowns: ranges[k].clone(),
+            grounded: body.grounded,
             modes: dual.modes_of(k),
             null_space: body.null_space,
             rounding: dual.rounding(),
@@ -122,8 +121,8 @@ impl<'a> Recovery<'a> {
         let open = OpenMotions {
             bodies: &self.data.bodies.iter().enumerate().map(moving).collect::<Vec<_>>(),
             amplitudes: &free,
-            metric: &self.ready.rows.metric,
-            grounded: &grounded,
+            metric: &self.ready.metric,
+            touched: self.data.touched,
             rows: &contact.matrix,
             gaps: &contact.rhs,
             compliance: &contact.compliance,

@@ -2,8 +2,7 @@
 
 use crate::dual::Preconditioner;
 use crate::error::Result;
-use crate::linalg::vector::axpy;
-use crate::linalg::{Csr, Operator};
+use crate::linalg::{ByBody, Csr, Operator};
 use crate::qp::{self, Qp};
 use crate::setup::Ready;
 use crate::solve::case::Case;
@@ -12,7 +11,7 @@ use crate::solve::gaps::Gaps;
 /// Loads and gaps in the scaling of the dual.
 pub struct Scaled {
     /// f / 2^p
-    pub load: Vec<f64>,
+    pub load: ByBody,
     pub gaps: Gaps,
     /// `B_p K_p+ f_p` of every body.
     pub moved: Vec<Vec<f64>>,
@@ -31,14 +30,14 @@ pub struct Scaled {
 pub struct Taken {
     /// The loads without this part, force; none if the part is so small on each body that it is removed from the
     /// resultants alone.
-    pub load: Option<Vec<f64>>,
+    pub load: Option<ByBody>,
     /// The largest |resultant| / |load| over the groups of bodies that move together.
     pub share: f64,
 }
 
 impl Scaled {
     /// `load`: f / 2^p; `moved`: `B_p K_p+ f_p`.
-    pub fn new(ready: &Ready, load: Vec<f64>, moved: Vec<Vec<f64>>, gaps: Gaps) -> Self {
+    pub fn new(ready: &Ready, load: ByBody, moved: Vec<Vec<f64>>, gaps: Gaps) -> Self {
         let d = ready.dual.rhs(&moved, &gaps.dual);
         let resultants = ready.dual.resultants(&load);
         Self { load, gaps, moved, d, resultants, unheld: None, cleaned: None, along: Vec::new() }
@@ -46,7 +45,7 @@ impl Scaled {
 
     /// Removes the part of the loads that forces x of the dual leave and of which nothing holds a `share`: `left`, in
     /// units of 2^p, from the loads if given, otherwise from the resultants alone.
-    pub fn take(&mut self, case: Case, x: &[f64], left: Option<&[f64]>, share: f64) -> Result<()> {
+    pub fn take(&mut self, case: Case, x: &[f64], left: Option<&ByBody>, share: f64) -> Result<()> {
         let ready = case.ready;
         let mut held = vec![0.0; self.resultants.len()];
         self.coarse(ready).mul_transposed_add(1.0, x, &mut held);
@@ -54,10 +53,10 @@ impl Scaled {
         let before = self.unheld.as_ref().map_or(0.0, |taken| taken.share);
         let mut taken = Taken { load: None, share: share.max(before) };
         if let Some(left) = left {
-            axpy(-1.0, left, &mut self.load);
+            self.load.add(-1.0, left);
             self.moved = ready.moved(case.threads(), &self.load)?;
             self.d = ready.dual.rhs(&self.moved, &self.gaps.dual);
-            taken.load = Some(self.load.iter().map(|f| f * ready.island.unit).collect());
+            taken.load = Some(self.load.map(|f| f * ready.island.unit));
         }
         self.unheld = Some(taken);
         Ok(())

@@ -12,7 +12,7 @@ use crate::linalg::vector::{norm, ratio, weighted_norm};
 use crate::linalg::Csr;
 use crate::numbers::linalg::WEAK;
 use crate::numbers::solve::FAR;
-use crate::platform::memory::{copied, zeros};
+use crate::platform::memory::zeros;
 use crate::qp::AnswerFace;
 use crate::setup::Ready;
 use crate::solve::recovery::{Ending, Recovery};
@@ -37,7 +37,7 @@ pub struct Slides {
     pub all: Vec<Slide>,
     /// The slide of each body.
     of_body: Vec<Option<usize>>,
-    /// v over the unknowns, 0 on bodies that do not slide, and v^.
+    /// v and v^ where rows touch; v is 0 on bodies that do not slide.
     v: Vec<f64>,
     size: Vec<f64>,
     /// |v|_D over the unknowns of each body without stiffness: with rows of length 1, it is a part of |b| v^ where these touch
@@ -52,9 +52,9 @@ pub struct Slides {
 impl Recovery<'_> {
     pub fn slides(&self, ending: &Ending) -> Result<Slides> {
         let ready = self.ready;
-        let bodies = &self.data.bodies;
-        let mut rest = copied(&ending.recovered.u, WHAT)?;
-        let n = rest.len();
+        let (bodies, touched) = (&self.data.bodies, self.data.touched);
+        let mut rest = ending.recovered.u.copied(WHAT)?;
+        let n = touched.len();
         let mut slides = Slides {
             all: Vec::new(),
             of_body: vec![None; bodies.len()],
@@ -66,8 +66,9 @@ impl Recovery<'_> {
         };
         let mut moves = vec![false; bodies.len()];
         for (p, body) in bodies.iter().enumerate() {
-            moves[p] = self.split(p, body, &mut slides, &mut rest[body.range()])?;
+            moves[p] = self.split(p, body, &mut slides, rest.on_mut(p))?;
         }
+        let mut rest = touched.at(&rest);
         if !moves.contains(&true) && self.scaled.along.is_empty() {
             return Ok(slides);
         }
@@ -100,13 +101,13 @@ impl Recovery<'_> {
         Ok(slides)
     }
 
-    /// Finds the slides among bodies that move along their amplitudes; `rest`: deformations.
+    /// Finds the slides among bodies that move along their amplitudes; `rest`: deformations where rows touch.
     fn evaluate(&self, slides: &mut Slides, moves: &[bool], rest: &[f64]) -> Result<()> {
         let (ready, rows, bodies) = (self.ready, &self.ready.rows.scaled, &self.data.bodies);
         slides.all.clear();
         slides.of_body.fill(None);
         for (p, body) in bodies.iter().enumerate() {
-            slides.v[body.range()].fill(0.0);
+            slides.v[self.data.touched.range(p)].fill(0.0);
             if moves[p] {
                 self.move_along(p, body, slides)?;
             } else {
@@ -117,7 +118,7 @@ impl Recovery<'_> {
         let parts = |i: usize| {
             let mut parts: Vec<(usize, f64, f64)> = Vec::new();
             for (j, b) in rows.row(i) {
-                let p = ready.island.body_of(j);
+                let p = ready.island.touched.body_of(j);
                 let (along, size) = (b * slides.v[j], b.abs() * slides.size[j]);
                 match parts.last_mut().filter(|part| part.0 == p) {
                     Some(part) => (part.1, part.2) = (part.1 + along, part.2 + size),
@@ -189,17 +190,15 @@ impl Recovery<'_> {
     /// Splits u of body p into its rigid motion, which goes to `slides`, and its deformation, which replaces u; true if the
     /// motion is far larger. Soft bodies are held by K: they do not slide.
     fn split(&self, p: usize, body: &BodyData, slides: &mut Slides, u: &mut [f64]) -> Result<bool> {
-        let metric = &self.ready.rows.metric[body.range()];
         let mut amplitudes = vec![0.0; body.null_space.cols];
         for _ in 0..2 {
-            let part = self.rigid_part(body, u);
+            let part = self.rigid_part(p, u);
             body.null_space.mul_add(-1.0, &part, u);
             amplitudes.iter_mut().zip(part).for_each(|(a, part)| *a += part);
         }
         let mut v = zeros(u.len(), WHAT)?;
         body.null_space.mul_add(1.0, &amplitudes, &mut v);
-        let length = |v: &[f64]| weighted_norm(v, |j| metric[j]);
-        if body.soft || length(&v) <= FAR * length(u) {
+        if body.soft || self.ready.length(p, &v) <= FAR * self.ready.length(p, u) {
             return Ok(false);
         }
         let (modes, size) = (self.ready.dual.modes_of(p), self.ready.dual.size_of(p));
@@ -209,16 +208,18 @@ impl Recovery<'_> {
 
     /// v and v^ of body p from its amplitudes.
     fn move_along(&self, p: usize, body: &BodyData, slides: &mut Slides) -> Result<()> {
-        let (range, metric) = (body.range(), &self.ready.rows.metric[body.range()]);
+        let (touched, metric) = (self.data.touched, self.ready.metric.on(p));
         let (modes, size) = (self.ready.dual.modes_of(p), self.ready.dual.size_of(p));
-        let v = &mut slides.v[range.clone()];
-        body.null_space.mul_add(1.0 / size, &slides.amplitudes[modes], v);
+        let mut v = zeros(metric.len(), WHAT)?;
+        body.null_space.mul_add(1.0 / size, &slides.amplitudes[modes], &mut v);
         let (mut image, mut terms) = (zeros(v.len(), WHAT)?, zeros(v.len(), WHAT)?);
-        body.stiffness.mul_with_terms(v, &mut image, &mut terms)?;
+        body.stiffness.mul_with_terms(&v, &mut image, &mut terms)?;
         let stiff = |j: usize| body.stiffness.metric(j, 0.0) > 0.0;
-        slides.loose[p] = weighted_norm(v, |j| if stiff(j) { 0.0 } else { metric[j] });
-        let sizes = slides.size[range].iter_mut().zip(terms).zip(metric);
-        sizes.for_each(|((size, terms), d)| *size = terms / (d * self.ready.island.unit));
+        slides.loose[p] = weighted_norm(&v, |j| if stiff(j) { 0.0 } else { metric[j] });
+        for (j, dof) in touched.range(p).zip(touched.dofs(p)) {
+            slides.v[j] = v[dof];
+            slides.size[j] = terms[dof] / (metric[dof] * self.ready.island.unit);
+        }
         Ok(())
     }
 }
@@ -276,7 +277,7 @@ impl Slides {
         }
         let (mut along, mut terms) = (0.0, 0.0);
         for (j, b) in ready.rows.matrix.row(i) {
-            let p = ready.island.body_of(j);
+            let p = ready.island.touched.body_of(j);
             if self.of_body[p] == Some(slide) {
                 (along, terms) = (along + b * self.v[j], terms + (b.abs() * self.size[j]).max(self.loose[p]));
             }

@@ -12,10 +12,11 @@ use std::sync::Arc;
 use crate::body;
 use crate::certificate::Data;
 use crate::error::Result;
+use crate::linalg::by_body::Ranges;
 use crate::linalg::cholesky::{Analysis, Cholesky};
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, weighted_norm, NOISE};
-use crate::linalg::{Csr, Symmetric};
+use crate::linalg::{ByBody, Csr, Symmetric};
 use crate::numbers::solve::{LEAST_COMPLIANCE, STIFFER};
 use crate::platform::memory::{copied, zeros};
 use crate::platform::{interrupt, tally};
@@ -31,8 +32,9 @@ const WHAT: &str = "the matrix of a face";
 
 /// The pattern of all faces of an island.
 pub struct SparseFaces<'a> {
-    /// B, the rows of the dual.
-    rows: &'a Csr,
+    ranges: &'a Ranges,
+    /// B, the rows of the dual, over all unknowns.
+    rows: Csr,
     compliance: &'a [f64],
     /// D / 2^p
     metric: &'a [f64],
@@ -42,6 +44,15 @@ pub struct SparseFaces<'a> {
     /// K in units of 2^p, with the pattern of K + B'B.
     k: Symmetric,
     analysis: Arc<Analysis>,
+}
+
+/// A point inside of the bounds.
+pub struct Inside {
+    /// Rows that it shows without a force.
+    pub active: Vec<bool>,
+    pub force: Vec<f64>,
+    /// Length.
+    pub motion: ByBody,
 }
 
 /// The factor of a face.
@@ -88,20 +99,23 @@ impl Stiffness for &SparseFaces<'_> {
 impl<'a> SparseFaces<'a> {
     /// None if some K is not given by its entries, or rows are wide.
     pub fn of(ready: &'a Ready, data: &Data<'a>) -> Result<Option<Self>> {
-        let own = &ready.rows;
-        let (rows, metric) = (&own.matrix, &own.metric[..]);
-        let wide = |i: usize| rows.ptr[i + 1] - rows.ptr[i] > WIDE;
-        if (0..rows.rows()).any(wide) {
+        let (given, metric) = (&ready.rows.matrix, ready.metric.in_sequence());
+        let wide = |i: usize| given.ptr[i + 1] - given.ptr[i] > WIDE;
+        if (0..given.rows()).any(wide) {
             return Ok(None);
         }
-        let gram = Gram::of(rows)?;
+        let (touched, ranges) = (data.touched, data.ranges);
+        let mut rows = Csr::with_room(metric.len(), given.rows(), given.val.len());
+        let unknown = |j: usize| ranges[touched.body_of(j)].start + touched.dof(j);
+        (0..given.rows()).for_each(|i| rows.push_row(given.row(i).map(|(j, v)| (unknown(j), v))));
+        let gram = Gram::of(&rows)?;
         let (pattern, unit) = (gram.pattern(), ready.island.unit);
         let mut k = Symmetric::with_room(metric.len(), pattern.col.len(), WHAT)?;
-        for body in &data.bodies {
+        for (body, range) in data.bodies.iter().zip(&**ranges) {
             let body::Stiffness::Matrix(own) = body.stiffness else { return Ok(None) };
             for i in 0..own.order() {
-                let stiff = own.lower_row(i).map(|(j, v)| (body.start + j, v / unit));
-                k.push_row(merged(stiff, pattern.lower_row(body.start + i).map(|(j, _)| (j, 0.0))));
+                let stiff = own.lower_row(i).map(|(j, v)| (range.start + j, v / unit));
+                k.push_row(merged(stiff, pattern.lower_row(range.start + i).map(|(j, _)| (j, 0.0))));
             }
         }
         let least = (0..rows.rows()).map(|i| {
@@ -110,7 +124,7 @@ impl<'a> SparseFaces<'a> {
         });
         let analysis = Arc::new(Analysis::new(&k, &vec![false; metric.len()])?);
         let (least, compliance) = (least.collect(), &ready.dual.compliance[..rows.rows()]);
-        Ok(Some(Self { rows, compliance, metric, least, gram, k, analysis }))
+        Ok(Some(Self { ranges, rows, compliance, metric, least, gram, k, analysis }))
     }
 
     /// Multiplications of a factorisation.
@@ -128,9 +142,9 @@ impl<'a> SparseFaces<'a> {
         Ok(factor.map(|factor| SparseFace { faces: self, rows, weight, factor }))
     }
 
-    /// The point of an interior point method, and the rows that it shows without a force.
-    pub fn inside(&self, scaled: &Scaled) -> Result<Option<(Vec<bool>, Point)>> {
-        let (Gaps { dual, value, bounded, far, .. }, e) = (&scaled.gaps, &scaled.load);
+    /// The point of an interior point method.
+    pub fn inside(&self, scaled: &Scaled) -> Result<Option<Inside>> {
+        let (Gaps { dual, value, bounded, far, .. }, e) = (&scaled.gaps, scaled.load.in_sequence());
         let m = self.rows.rows();
         let held: Vec<bool> = (0..m).map(|i| far[i] || value[i] == f64::INFINITY).collect();
         let gap: Vec<f64> = (0..m).map(|i| if held[i] { 0.0 } else { dual[i] }).collect();
@@ -151,7 +165,7 @@ impl<'a> SparseFaces<'a> {
             .map(|(c, least)| c.max(LEAST_COMPLIANCE * least))
             .collect();
         let interior = Interior {
-            rows: self.rows,
+            rows: &self.rows,
             e,
             bounded,
             held: &held,
@@ -161,19 +175,18 @@ impl<'a> SparseFaces<'a> {
             least: &least,
             mean,
         };
-        let mut point = interior.solve(&mut stiffness, motion)?;
-        let Point { force, slack, .. } = &point;
+        let Point { motion, mut force, slack, .. } = interior.solve(&mut stiffness, motion)?;
         let active = |i: usize| bounded[i] && (held[i] || force[i] * first[i] < slack[i]);
         let active = (0..bounded.len()).map(|i| i < m && active(i)).collect();
-        point.force.resize(bounded.len(), 0.0);
-        Ok(Some((active, point)))
+        force.resize(bounded.len(), 0.0);
+        Ok(Some(Inside { active, force, motion: ByBody::of(self.ranges, motion) }))
     }
 
     /// Of `K + B'W B`; none if it is not positive semidefinite.
     fn factor(&self, weight: &[f64]) -> Result<Option<Factor>> {
         interrupt::check()?;
         tally::costly();
-        let pressed = self.gram.weighted(self.rows, |i| weight[i])?;
+        let pressed = self.gram.weighted(&self.rows, |i| weight[i])?;
         let diagonal = (0..self.k.order()).map(|i| self.k.diagonal(i) + pressed.diagonal(i));
         let scale: Vec<f64> = diagonal.map(|d| if d > 0.0 { d.sqrt().recip() } else { 1.0 }).collect();
         let mut scaled = Symmetric::with_room(scale.len(), self.k.col.len(), WHAT)?;
@@ -188,7 +201,8 @@ impl<'a> SparseFaces<'a> {
 
 impl SparseFace<'_> {
     /// du, and dx over all rows, for residual loads and gaps in units of 2^p.
-    pub fn solve(&self, mut load: Vec<f64>, gaps: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
+    pub fn solve(&self, load: &ByBody, gaps: &[f64]) -> Result<(ByBody, Vec<f64>)> {
+        let mut load = copied(load.in_sequence(), WHAT)?;
         let mut pull = zeros(gaps.len(), WHAT)?;
         self.rows.iter().for_each(|&i| pull[i] = self.weight[i] * gaps[i]);
         self.faces.rows.mul_transposed_add(1.0, &pull[..self.weight.len()], &mut load);
@@ -196,7 +210,7 @@ impl SparseFace<'_> {
         for &i in &self.rows {
             pull[i] = self.weight[i] * (self.faces.rows.row_dot(i, &moved) - gaps[i]);
         }
-        Ok((moved, pull))
+        Ok((ByBody::of(self.faces.ranges, moved), pull))
     }
 
     /// Motions that neither K nor the rows resist.

@@ -1,17 +1,18 @@
 //! A point of the finish: forces and displacements in two doubles, corrected on one face by the residuals of the host's data.
 
-use crate::certificate::NOISE;
+use crate::certificate::{BodyData, NOISE};
 use crate::error::Result;
-use crate::linalg::twofold::TwofoldVector;
-use crate::linalg::vector::{axpy, weighted_norm};
+use crate::linalg::twofold::{TwofoldByBody, TwofoldVector};
+use crate::linalg::vector::axpy;
+use crate::linalg::ByBody;
 use crate::numbers::solve::FAR;
 use crate::qp::friction::{Corrected, State};
-use crate::qp::{Face, Point};
+use crate::qp::Face;
 use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovery};
 
-use crate::solve::sparse_face::SparseFace;
+use crate::solve::sparse_face::{Inside, SparseFace};
 
 /// The factors of a face: dense ones of F and the modes, or sparse ones of the island.
 #[derive(Clone, Copy)]
@@ -24,15 +25,15 @@ pub enum FaceSolver<'a> {
 /// lose its digits. v, w and x are in two doubles: where loads and forces nearly cancel, rounding of x would move v.
 #[derive(Clone)]
 pub struct SplitPoint {
-    v: TwofoldVector,
+    v: TwofoldByBody,
     /// Amplitudes of the motions that v contains.
     beta: Vec<f64>,
-    w: TwofoldVector,
+    w: TwofoldByBody,
     x: TwofoldVector,
     pub alpha: Vec<f64>,
     /// A motion of a body is added to w where it is larger than v by this factor.
     apart: f64,
-    /// The largest correction of each unknown on this face: its rounding is not seen in u where a row presses u to zero.
+    /// The largest correction of each touched unknown on this face: its rounding is not seen in u where a row presses u to zero.
     corrected: Vec<f64>,
 }
 
@@ -43,37 +44,37 @@ impl SplitPoint {
         let Ending { solution, deformed, judgement, .. } = ending;
         let modes = solution.alpha.len();
         if !judgement.certificate.passed() && !recovery.friction {
-            return Ok(Self::at_origin(vec![0.0; deformed.len()], vec![0.0; solution.x.len()], modes, apart));
+            let (v, x) = (deformed.map(|_| 0.0), vec![0.0; solution.x.len()]);
+            return Ok(Self::at_origin(recovery, v, (x, modes), apart));
         }
         let deformed = recovery.deformed(&solution.x)?;
-        let mut point = Self::at_origin(deformed, solution.x.clone(), modes, apart);
+        let mut point = Self::at_origin(recovery, deformed, (solution.x.clone(), modes), apart);
         point.turn(recovery, &solution.alpha)?;
         Ok(point)
     }
 
-    pub fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize, apart: f64) -> Self {
-        let none = vec![0.0; v.len()];
-        let (w, v, x) = (none.clone().into(), v.into(), x.into());
-        Self { w, v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart, corrected: none }
+    pub fn at_origin(recovery: &Recovery, v: ByBody, (x, modes): (Vec<f64>, usize), apart: f64) -> Self {
+        let corrected = vec![0.0; recovery.data.touched.len()];
+        let (w, v, x) = (v.map(|_| 0.0).into(), v.into(), x.into());
+        Self { w, v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart, corrected }
     }
 
     /// The point of an interior point method.
-    pub fn inside(recovery: &Recovery, found: &Point) -> Self {
-        let alpha = recovery.amplitudes(&found.motion);
-        let point = Self::at_origin(found.motion.clone(), found.force.clone(), alpha.len(), FAR);
+    pub fn inside(recovery: &Recovery, Inside { motion, force, .. }: &Inside) -> Self {
+        let alpha = recovery.amplitudes(motion);
+        let point = Self::at_origin(recovery, motion.clone(), (force.clone(), alpha.len()), FAR);
         Self { beta: alpha.clone(), alpha, ..point }
     }
 
     /// Adds R a and returns R a.
-    fn turn(&mut self, recovery: &Recovery, a: &[f64]) -> Result<Vec<f64>> {
-        let dual = &recovery.ready.dual;
-        let motion = dual.rigid_motion(a, self.v.len());
+    fn turn(&mut self, recovery: &Recovery, a: &[f64]) -> Result<ByBody> {
+        let motion = recovery.ready.rigid_motion(a);
         let apart = recovery.travels(&motion, &self.v.values(), self.apart)?;
-        for (k, (body, apart)) in recovery.data.bodies.iter().zip(apart).enumerate() {
+        for (p, apart) in apart.into_iter().enumerate() {
             let to = if apart { &mut self.w } else { &mut self.v };
-            body.range().for_each(|j| to.add(j, motion[j]));
+            to.add_on(p, motion.on(p));
             if !apart {
-                let modes = dual.modes_of(k);
+                let modes = recovery.ready.dual.modes_of(p);
                 axpy(1.0, &a[modes.clone()], &mut self.beta[modes]);
             }
         }
@@ -82,16 +83,16 @@ impl SplitPoint {
     }
 
     /// u - R alpha
-    pub fn deformed(&self, recovery: &Recovery) -> Vec<f64> {
-        let mut v = recovery.ready.dual.rigid_motion(&self.beta, self.v.len());
-        v.iter_mut().enumerate().for_each(|(j, motion)| *motion = self.v.get(j) - *motion);
+    pub fn deformed(&self, recovery: &Recovery) -> ByBody {
+        let mut v = self.v.values();
+        v.add(-1.0, &recovery.ready.rigid_motion(&self.beta));
         v
     }
 
     /// u
-    pub fn displacement(&self) -> Vec<f64> {
+    pub fn displacement(&self) -> ByBody {
         let mut u = self.w.values();
-        axpy(1.0, &self.v.values(), &mut u);
+        u.add(1.0, &self.v.values());
         u
     }
 
@@ -110,7 +111,11 @@ impl SplitPoint {
     /// D even at carried unknowns.
     pub fn settle(&mut self, recovery: &Recovery, face: &Face) -> Result<()> {
         let (rows, bounded) = (&recovery.ready.rows.matrix, &recovery.scaled.gaps.bounded);
-        let stiffness: Vec<f64> = recovery.data.bodies.iter().flat_map(|body| body.metric()).collect();
+        let (touched, bodies) = (recovery.data.touched, &recovery.data.bodies);
+        let of_body = |(p, body): (usize, &BodyData)| -> Vec<f64> {
+            touched.dofs(p).map(|dof| body.stiffness.metric(dof, body.unit)).collect()
+        };
+        let stiffness: Vec<f64> = bodies.iter().enumerate().flat_map(of_body).collect();
         // a spring of a body depends on no row
         let weight = |&i: &usize| {
             let of_row = |i: usize| rows.row(i).map(|(j, v)| v * v / stiffness[j]).sum::<f64>();
@@ -143,13 +148,13 @@ impl SplitPoint {
         negative: &NegativeMotions,
         face: FaceSolver,
     ) -> Result<f64> {
-        let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
+        let dual = &recovery.ready.dual;
         let load = recovery.load_left(&self.v.parts(), &self.x.parts())?;
         let left = self.gaps_left(recovery);
         let (moved, forces) = match face {
             FaceSolver::Sparse(face) => {
-                let (moved, mut forces) = face.solve(load, &left)?;
-                moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
+                let (moved, mut forces) = face.solve(&load, &left)?;
+                self.v.add(&moved);
                 let turn = recovery.amplitudes(&moved);
                 axpy(1.0, &turn, &mut self.alpha);
                 axpy(1.0, &turn, &mut self.beta);
@@ -176,21 +181,22 @@ impl SplitPoint {
             }
         };
         forces.iter().enumerate().for_each(|(i, force)| self.x.add(i, *force));
-        self.corrected.iter_mut().zip(&moved).for_each(|(most, by)| *most = most.max(by.abs()));
-        Ok(weighted_norm(&moved, |i| rows.metric[i]))
+        let at = recovery.data.touched.at(&moved);
+        self.corrected.iter_mut().zip(at).for_each(|(most, by)| *most = most.max(by.abs()));
+        Ok(recovery.ready.length_of_all(&moved))
     }
 
     /// Adds the motion of the bodies by residual loads, the change of the forces and of the amplitudes, and returns it.
     fn moved_by(
         &mut self,
         recovery: &Recovery,
-        mut load: Vec<f64>,
+        mut load: ByBody,
         (forces, turn): (&[f64], &[f64]),
-    ) -> Result<Vec<f64>> {
-        recovery.ready.rows.take_forces(forces, &mut load);
+    ) -> Result<ByBody> {
+        recovery.ready.take_forces(forces, &mut load);
         let mut moved = recovery.inverse(&load)?;
-        moved.iter().enumerate().for_each(|(j, moved)| self.v.add(j, *moved));
-        axpy(1.0, &self.turn(recovery, turn)?, &mut moved);
+        self.v.add(&moved);
+        moved.add(1.0, &self.turn(recovery, turn)?);
         Ok(moved)
     }
 
@@ -209,13 +215,13 @@ impl SplitPoint {
         let Some(step) = recovery.friction_step(&open, at)? else { return Ok(None) };
         let moved = self.moved_by(recovery, load, (&step.forces, &step.turn))?;
         step.forces.iter().enumerate().for_each(|(i, force)| self.x.add(i, *force));
-        Ok(Some((weighted_norm(&moved, |i| recovery.ready.rows.metric[i]), step.states)))
+        Ok(Some((recovery.ready.length_of_all(&moved), step.states)))
     }
 
     /// The active set by the signs of forces and gaps.
     pub fn active(&self, recovery: &Recovery) -> Vec<bool> {
         let (left, rows) = (self.gaps_left(recovery), &recovery.ready.rows.scaled);
-        let (u, x) = (self.displacement(), self.x.values());
+        let (u, x) = (recovery.data.touched.at(&self.displacement()), self.x.values());
         let Gaps { value, bounded, .. } = &recovery.scaled.gaps;
         let terms =
             |i: usize| rows.row(i).map(|(j, v)| v.abs() * u[j].abs().max(self.corrected[j])).sum::<f64>();

@@ -11,10 +11,11 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use crate::constraints::Touched;
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::{axpy, dot, norm_max, NOISE};
-use crate::linalg::{Csr, Matrix};
+use crate::linalg::{ByBody, Csr, Matrix};
 use crate::numbers::linalg::DEPENDENT;
 use crate::qp::{nearest_point, Polyhedron};
 
@@ -23,8 +24,8 @@ const PASSES: usize = 2;
 
 /// The null space of one body.
 pub struct Moving<'a> {
-    /// Its unknowns among all unknowns.
-    pub unknowns: Range<usize>,
+    /// Its unknowns that do not move.
+    pub grounded: &'a [u32],
     /// Its modes among all modes.
     pub modes: Range<usize>,
     /// `R_p`
@@ -35,15 +36,15 @@ pub struct Moving<'a> {
 
 /// Free motions, and the rows that restrict them.
 pub struct OpenMotions<'a> {
-    /// Bodies in ascending order of unknowns and modes.
+    /// Bodies in ascending order of modes.
     pub bodies: &'a [Moving<'a>],
     /// A: amplitudes of the null spaces, r x d.
     pub amplitudes: &'a Matrix,
-    /// D, one entry per unknown.
-    pub metric: &'a [f64],
-    /// Unknowns that do not move.
-    pub grounded: &'a [bool],
-    /// Contact rows B over all unknowns, their gaps c (infinite: never closed), compliance C and forces lambda. Rows with
+    /// D
+    pub metric: &'a ByBody,
+    /// Unknowns that rows touch.
+    pub touched: &'a Touched,
+    /// Contact rows B over these, their gaps c (infinite: never closed), compliance C and forces lambda. Rows with
     /// lambda > 0 resist no motion of N and are ignored.
     pub rows: &'a Csr,
     pub gaps: &'a [f64],
@@ -53,13 +54,13 @@ pub struct OpenMotions<'a> {
 
 /// The answer of least travel.
 pub struct Rest {
-    pub u: Vec<f64>,
+    pub u: ByBody,
     /// Of the null spaces, over all modes.
     pub amplitudes: Vec<f64>,
 }
 
 /// The answer of least travel from `deformed` + R `amplitudes` on. Only their sum moves u: a far way there and back leaves nothing.
-pub fn travel(open: &OpenMotions, deformed: &[f64], mut amplitudes: Vec<f64>) -> Result<Rest> {
+pub fn travel(open: &OpenMotions, deformed: &ByBody, mut amplitudes: Vec<f64>) -> Result<Rest> {
     let null_spaces: Vec<Cow<Matrix>> = open.bodies.iter().map(|body| open.grounded_out(body)).collect();
     let groups = open.orthonormal(&null_spaces)?;
     let of_motion: Vec<(usize, usize)> = groups
@@ -69,9 +70,9 @@ pub fn travel(open: &OpenMotions, deformed: &[f64], mut amplitudes: Vec<f64>) ->
         .collect();
     let motions = open.along_rows(&null_spaces, &groups);
     let placed = |amplitudes: &[f64]| {
-        let mut u = deformed.to_vec();
-        for (body, null_space) in open.bodies.iter().zip(&null_spaces) {
-            null_space.mul_add(1.0, &amplitudes[body.modes.clone()], &mut u[body.unknowns.clone()]);
+        let mut u = deformed.clone();
+        for (p, (body, null_space)) in open.bodies.iter().zip(&null_spaces).enumerate() {
+            null_space.mul_add(1.0, &amplitudes[body.modes.clone()], u.on_mut(p));
         }
         u
     };
@@ -114,11 +115,10 @@ impl MotionGroup {
 impl OpenMotions<'_> {
     /// `R_p`, exactly 0 on grounded unknowns where it is rounding. Unknowns that hang softly on stiff ones move with them.
     fn grounded_out<'b>(&self, body: &Moving<'b>) -> Cow<'b, Matrix> {
-        let grounded = &self.grounded[body.unknowns.clone()];
         let mut null_space = Cow::Borrowed(body.null_space);
         for j in 0..body.null_space.cols {
             let rounding = body.rounding * norm_max(body.null_space.col(j));
-            for i in (0..grounded.len()).filter(|&i| grounded[i]) {
+            for i in body.grounded.iter().map(|i| *i as usize) {
                 if null_space.get(i, j).abs() <= rounding {
                     null_space.to_mut().set(i, j, 0.0);
                 }
@@ -128,13 +128,11 @@ impl OpenMotions<'_> {
     }
 
     /// `R_p'D v` of every body, over all modes.
-    fn projections(&self, null_spaces: &[Cow<Matrix>], v: &[f64]) -> Vec<f64> {
+    fn projections(&self, null_spaces: &[Cow<Matrix>], v: &ByBody) -> Vec<f64> {
         let mut all = vec![0.0; self.amplitudes.rows];
-        for (body, null_space) in
-            self.bodies.iter().zip(null_spaces).filter(|(body, _)| !body.modes.is_empty())
-        {
-            let own = body.unknowns.clone();
-            let weighted: Vec<f64> = own.map(|i| self.metric[i] * v[i]).collect();
+        let bodies = self.bodies.iter().zip(null_spaces).enumerate();
+        for (p, (body, null_space)) in bodies.filter(|(_, (body, _))| !body.modes.is_empty()) {
+            let weighted: Vec<f64> = self.metric.on(p).iter().zip(v.on(p)).map(|(d, v)| d * v).collect();
             all[body.modes.clone()].copy_from_slice(&null_space.mul_transposed(&weighted));
         }
         all
@@ -210,7 +208,7 @@ impl OpenMotions<'_> {
 
     /// `R_p'D R_p`
     fn gram(&self, p: usize, null_space: &Matrix) -> Result<Matrix> {
-        let metric = &self.metric[self.bodies[p].unknowns.clone()];
+        let metric = self.metric.on(p);
         let mut gram = Matrix::zeros(null_space.cols, null_space.cols)?;
         for j in 0..null_space.cols {
             let weighted: Vec<f64> = null_space.col(j).iter().zip(metric).map(|(r, d)| r * d).collect();
@@ -234,10 +232,10 @@ impl OpenMotions<'_> {
             // terms of `b_i R`: mode, value, accuracy
             let mut terms: Vec<(usize, f64, f64)> = Vec::new();
             for (unknown, b) in self.rows.row(i).filter(|_| self.lambda[i] <= 0.0) {
-                let p = self.bodies.partition_point(|body| body.unknowns.end <= unknown);
+                let (p, dof) = (self.touched.body_of(unknown), self.touched.dof(unknown));
                 let body = &self.bodies[p];
                 for (j, mode) in body.modes.clone().enumerate().filter(|(_, mode)| at[*mode].is_some()) {
-                    let value = b * null_spaces[p].get(unknown - body.unknowns.start, j);
+                    let value = b * null_spaces[p].get(dof, j);
                     let known = body.rounding.max(NOISE) * b.abs() * fastest[mode];
                     match terms.iter_mut().find(|term| term.0 == mode) {
                         Some(term) => (term.1, term.2) = (term.1 + value, term.2 + known),
@@ -251,13 +249,14 @@ impl OpenMotions<'_> {
     }
 
     /// `c + C lambda - B u` and its rounding; rows with lambda > 0 and infinite gaps do not restrict.
-    fn left(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    fn left(&self, u: &ByBody) -> (Vec<f64>, Vec<f64>) {
+        let u = self.touched.at(u);
         let (mut gaps, mut noise) = (vec![f64::INFINITY; self.rows.rows()], vec![0.0; self.rows.rows()]);
         let restricts = |i: &usize| self.lambda[*i] <= 0.0 && self.gaps[*i] < f64::INFINITY;
         for i in (0..self.rows.rows()).filter(restricts) {
             let yielded = self.compliance[i] * self.lambda[i];
-            gaps[i] = self.gaps[i] + yielded - self.rows.row_dot(i, u);
-            noise[i] = NOISE * (self.gaps[i].abs() + yielded.abs() + self.rows.row_dot_abs(i, u));
+            gaps[i] = self.gaps[i] + yielded - self.rows.row_dot(i, &u);
+            noise[i] = NOISE * (self.gaps[i].abs() + yielded.abs() + self.rows.row_dot_abs(i, &u));
         }
         (gaps, noise)
     }

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::dot;
+use crate::linalg::ByBody;
 use crate::platform::memory::zeros;
 use crate::solve::case::Case;
 
@@ -12,22 +13,21 @@ const WHAT: &str = "the work of the loads";
 /// and an inexact K+ cannot make it too large.
 pub fn work_of_loads(case: Case) -> Result<f64> {
     let (data, ready) = (case.data()?, case.ready);
-    let (metric, unit) = (&ready.rows.metric, ready.island.unit);
-    let mut load = zeros(metric.len(), WHAT)?;
-    for body in &data.bodies {
-        let own = &mut load[body.range()];
+    let mut load = ByBody::zeros(data.ranges, WHAT)?;
+    for (p, body) in data.bodies.iter().enumerate() {
+        let own = load.on_mut(p);
         own.copy_from_slice(body.load.unwrap_or(&vec![0.0; own.len()]));
         body.grounded.iter().for_each(|j| own[*j as usize] = 0.0);
         let resultants = body.null_space.mul_transposed(own);
         let mut rigid = zeros(own.len(), WHAT)?;
         body.null_space.mul_add(1.0 / body.unit, &resultants, &mut rigid);
-        let rigid = rigid.iter().zip(&metric[body.range()]);
-        own.iter_mut().zip(rigid).for_each(|(f, (rigid, d))| *f -= unit * d * rigid);
+        let rigid = rigid.iter().zip(ready.metric.on(p));
+        own.iter_mut().zip(rigid).for_each(|(f, (rigid, d))| *f -= ready.island.unit * d * rigid);
     }
     let motion = ready.displacement(case.threads(), &load)?;
     let mut work = 0.0;
-    for body in &data.bodies {
-        let (g, v) = (&load[body.range()], &motion[body.range()]);
+    for (p, body) in data.bodies.iter().enumerate() {
+        let (g, v) = (load.on(p), motion.on(p));
         let mut strain = zeros(v.len(), WHAT)?;
         body.stiffness.mul(v, &mut strain)?;
         let (done, stored) = (dot(g, v), dot(v, &strain));

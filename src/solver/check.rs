@@ -1,6 +1,6 @@
 //! The certificate of an existing answer.
 
-use crate::certificate::{certify, Candidate, Certificate, Entry};
+use crate::certificate::{self, certify, Certificate, Entry};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::model::HostModel;
@@ -8,6 +8,19 @@ use crate::solve::{named, Case};
 use crate::solver::decomposed::solved;
 use crate::solver::joints::with_glue;
 use crate::solver::problem::Problem;
+
+/// An answer over all unknowns and rows.
+#[derive(Clone, Copy)]
+pub struct Candidate<'a> {
+    /// n, length.
+    pub u: &'a [f64],
+    /// m, force.
+    pub lambda: &'a [f64],
+    /// q, force.
+    pub mu: &'a [f64],
+    /// t, force.
+    pub tangential: &'a [f64],
+}
 
 impl Problem {
     /// The certificate of any answer without friction, for example the answer of another code.
@@ -43,7 +56,7 @@ impl Problem {
                 return Err(error.value(values.len() as f64).limit(expected as f64));
             }
         }
-        let mu = &with_glue(host, answer)?[..];
+        let mu = &with_glue(host, u, [lambda, mu, tangential])?[..];
         let copies = model.parts.as_ref().map(|parts| parts.spread(u)).transpose()?;
         let u = copies.as_deref().unwrap_or(u);
         let mut all: Option<Certificate> = None;
@@ -54,7 +67,8 @@ impl Problem {
                 ready.whole.as_ref().map_or(&island.equalities, |whole| &whole.island.equalities);
             let (lambda, mu) = (island.contact.gather(lambda), equalities.gather(mu));
             let tangential = island.friction.tangential.gather(tangential);
-            let answer = Candidate { u: &own, lambda: &lambda, mu: &mu, tangential: &tangential };
+            let answer =
+                certificate::Candidate { u: &own, lambda: &lambda, mu: &mu, tangential: &tangential };
             let data = Case { model, prepared, ready, method: None }.data()?;
             let judged = match &ready.whole {
                 None => certify(&data, answer)?,

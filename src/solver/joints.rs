@@ -1,6 +1,5 @@
 //! The forces that glue bodies of the host together. The host has no rows for them.
 
-use crate::certificate::Candidate;
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::model::{HostModel, Joint};
@@ -11,9 +10,8 @@ const WHAT: &str = "forces of glue";
 /// Multipliers of the host's equality rows, then of the joints, with the joint forces that bring the answer closest to
 /// equilibrium: the residual `f - K u - B'lambda` of an unknown is passed to the next unknown with its number and remains
 /// at the last one.
-pub fn with_glue(host: &HostModel, answer: Candidate) -> Result<Vec<f64>> {
-    let u = answer.u;
-    let (mut all, joints) = (copied(answer.mu, WHAT)?, host.joints()?);
+pub fn with_glue(host: &HostModel, u: &[f64], forces: [&[f64]; 3]) -> Result<Vec<f64>> {
+    let (mut all, joints) = (copied(forces[RowKind::Equality as usize], WHAT)?, host.joints()?);
     if joints.is_empty() {
         return Ok(all);
     }
@@ -26,7 +24,7 @@ pub fn with_glue(host: &HostModel, answer: Candidate) -> Result<Vec<f64>> {
         own.iter_mut().zip(given.body.load.iter().flatten()).for_each(|(left, f)| *left += f);
     }
     for kind in RowKind::ALL {
-        let (rows, forces) = (host.rows(kind), answer.forces(kind));
+        let (rows, forces) = (host.rows(kind), forces[kind as usize]);
         let mut carried = filled(rows.len(), 0.0, WHAT)?;
         (0..rows.len()).filter(|&i| rows.is_finite(i)).for_each(|i| carried[i] = forces[i]);
         rows.matrix.mul_transposed_add(-1.0, &carried, &mut left);

@@ -20,7 +20,7 @@ mod told;
 mod undetermined;
 
 pub use crate::body::{Columns, Digits, Doubt, HostFunctions, HostProduct, Modes, SparseInput, Storage};
-pub use crate::certificate::{Candidate, Certificate, Entry, FrictionState};
+pub use crate::certificate::{Certificate, Entry, FrictionState};
 pub use crate::constraints::{FrictionInput, RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
@@ -30,5 +30,6 @@ pub use crate::progress::{Listener, LogLevel, LogListener, PhaseReport, Progress
 pub use crate::qp::StepKind;
 pub use crate::solve::{DualMethod, HostForm, Outcome, Report, RowState};
 pub use body_facts::{BodyFacts, Factors, Origin};
+pub use check::Candidate;
 pub use findings::Findings;
 pub use problem::Problem;

@@ -121,7 +121,7 @@ impl Problem {
         let contact = self.model.contact.len();
         for ready in &self.prepared.done(&self.model)?.islands {
             let mut load = ready.island.loads(self.solved())?;
-            load.iter_mut().for_each(|f| *f /= ready.island.unit);
+            load.change(|f| *f /= ready.island.unit);
             let moved = ready.moved(self.model.threads(), &load)?;
             let moved = ready.dual.rhs(&moved, &vec![0.0; ready.rows.groups()]);
             for (i, length) in ready.rows.scaling.lengths_to_host(&moved) {

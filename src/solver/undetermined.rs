@@ -1,7 +1,6 @@
 //! What an answer leaves undetermined: rigid motions that no closed row and no equality row resists and on which the load
 //! does no work; equality rows that depend on each other and share their forces.
 
-use crate::certificate::Candidate;
 use crate::constraints::RowKind;
 use crate::dual::dependent_rows;
 use crate::error::{Error, Kind, Result};
@@ -36,7 +35,7 @@ impl Problem {
             return Err(Error::argument("k", what).index(k as i64).limit(all.len() as f64));
         };
         let ready = &self.prepared.done(&self.model)?.islands[*island];
-        let own = ready.dual.rigid_motion(amplitudes, ready.island.unknowns());
+        let own = ready.rigid_motion(amplitudes);
         let mut v = zeros(self.solved().sizes().dofs, "an open motion")?;
         ready.island.scatter(self.solved(), &own, &mut v);
         if let Some(parts) = self.parts() {
@@ -66,10 +65,10 @@ impl Problem {
             let lambda = ready.island.contact.gather(&answer.lambda);
             let mu = ready.island.equalities.gather(&answer.mu);
             let tangential = ready.island.friction.tangential.gather(&answer.tangential);
-            let answer = Candidate { u: &[], lambda: &lambda, mu: &mu, tangential: &tangential };
             let dual = &ready.dual;
             let coarse = cleaned.as_deref().unwrap_or(&dual.coarse);
-            let held = without_force(ready, coarse, &ready.island.loads(self.solved())?, answer)?;
+            let load = ready.island.loads(self.solved())?;
+            let held = without_force(ready, coarse, &load, [&lambda, &mu, &tangential])?;
             let motions = AnswerFace::new(coarse, &dual.blocks, &held, dual.rounding())?.undetermined()?;
             all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));
         }

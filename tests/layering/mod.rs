@@ -108,6 +108,11 @@ const FORBIDDEN: [&str; 11] = [
 /// The one panic outside the tests: the option `fault_injection`.
 const INJECTED: (&str, &str) = ("c/src/solve.rs", "panic!");
 
+/// What makes one slice of the unknowns of an island: in solve and certificate vectors over unknowns are read body by body, except where
+/// K of all bodies is factorised.
+const ALL_UNKNOWNS: [&str; 3] = ["in_sequence", "ByBody::of(", ".unknowns()"];
+const IN_ONE_PLACE: &str = "src/solve/sparse_face.rs";
+
 const LONGEST: usize = 400;
 
 /// Where the crates have their sources.
@@ -156,6 +161,13 @@ fn faults(path: &str, text: &str) -> Vec<String> {
         let calls = occurrences(&code, token).filter(|&at| !tests.iter().any(|range| range.contains(&at)));
         let allowed = usize::from((path, token) == INJECTED);
         calls.skip(allowed).for_each(|at| report(at, format!("{token} outside the tests")));
+    }
+    for token in
+        ALL_UNKNOWNS.iter().filter(|_| ["solve", "certificate"].contains(&layer) && path != IN_ONE_PLACE)
+    {
+        let outside = |at: &usize| !tests.iter().any(|range| range.contains(at));
+        let found = occurrences(&code, token).filter(outside);
+        found.for_each(|at| report(at, format!("{token}: all unknowns in one slice, outside the tests")));
     }
     let lines = text.lines().count();
     if lines > LONGEST {
@@ -290,6 +302,16 @@ fn a_way_around_through_super_is_seen() {
     assert_eq!(faults("src/qp/mod.rs", "use super::{body, linalg};").len(), 1);
     assert!(faults("src/qp/mod.rs", "mod tests {\n    use super::body;\n}").is_empty(), "a module qp::body");
     assert_eq!(faults("src/qp/mod.rs", "mod tests {\n    use super::super::body;\n}").len(), 1);
+}
+
+#[test]
+fn a_slice_of_all_unknowns_is_seen_in_solve_and_certificate() {
+    let slice = "fn f(u: &ByBody) -> f64 {\n    u.in_sequence()[3]\n}\n";
+    let fault = "2: in_sequence: all unknowns in one slice, outside the tests";
+    for path in ["src/solve/held.rs", "src/certificate/field.rs"] {
+        assert_eq!(faults(path, slice), [format!("{path}:{fault}")]);
+    }
+    assert!(faults(IN_ONE_PLACE, slice).is_empty() && faults("src/setup/ready.rs", slice).is_empty());
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::nodes::DenseNode;
 use super::*;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Csr, Symmetric};
+use std::sync::Arc;
 
 pub const LIMIT: f64 = 1e-8;
 
@@ -183,10 +184,16 @@ impl DenseModel {
         let matrices: Vec<Symmetric> = self.parts.iter().map(DenseBody::matrix).collect();
         let spaces: Vec<Matrix> = self.parts.iter().map(DenseBody::null_space).collect();
         let grounded: Vec<Vec<u32>> = matrices.iter().map(|k| grounded(k.into()).unwrap()).collect();
-        let (mut bodies, mut start) = (Vec::new(), 0);
+        let mut end = 0;
+        let ranges = self.parts.iter().map(|part| {
+            end += part.k.len();
+            end - part.k.len()..end
+        });
+        let ranges: Ranges = Arc::new(ranges.collect());
+        let (tangential, nodes) = (Self::rows(&self.tangential(), n), self.laws());
+        let mut bodies = Vec::new();
         for (p, part) in self.parts.iter().enumerate() {
             bodies.push(BodyData {
-                start,
                 stiffness: (&matrices[p]).into(),
                 load: Some(&part.load),
                 null_space: &spaces[p],
@@ -194,11 +201,11 @@ impl DenseModel {
                 unit: part.unit(),
                 grounded: &grounded[p],
             });
-            start += part.k.len();
         }
-        let (tangential, nodes) = (Self::rows(&self.tangential(), n), self.laws());
         let data = Data {
             bodies,
+            ranges: &ranges,
+            touched: &Touched::of(&ranges, 0..n),
             contact: &contact,
             equalities: &equalities,
             tangential: &tangential,
@@ -208,7 +215,8 @@ impl DenseModel {
         };
         let none = vec![0.0; tangential.len()];
         let tangential = if point.tangential.is_empty() { &none } else { &point.tangential };
-        let answer = Candidate { u: &point.u, lambda: &point.lambda, mu: &point.mu, tangential };
+        let u = ByBody::of(&ranges, point.u.clone());
+        let answer = Candidate { u: &u, lambda: &point.lambda, mu: &point.mu, tangential };
         certify(&data, answer).unwrap()
     }
 

@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use crate::body::GeneralizedInverse;
 use crate::certificate::{certify, grounded, BodyData, Candidate, Data, Judgement};
-use crate::constraints::{RowKind, RowSet};
+use crate::constraints::{RowKind, RowSet, Touched};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::power_of_two_below;
-use crate::linalg::{Csr, Matrix};
+use crate::linalg::{ByBody, Csr, Matrix};
 use crate::model::{Parts, SolvedModel};
 use crate::platform::memory::{copied, reserved, zeros};
 use crate::platform::threads;
@@ -22,7 +22,7 @@ const WHAT: &str = "bodies that are cut";
 
 /// The bodies of an island, each with all its pieces.
 pub struct Whole {
-    /// Bodies and rows with the numbers of the host, over the unknowns of the bodies that are cut and of the other parts.
+    /// Bodies and rows with the numbers of the host, over the touched unknowns of the bodies that are cut and of the other parts.
     pub island: Island,
     bodies: Vec<WholeBody>,
     /// For every part of the cut island: its body in `island`.
@@ -84,7 +84,26 @@ impl Whole {
                 (start + dof, share)
             }));
         }
-        let of_host = |kind| members(cut.members(kind), end, kind, parts, &place);
+        // unknowns of `island` where rows touch pieces
+        let at = |j: usize| {
+            let part = cut.touched.body_of(j);
+            place[cut.ranges[part].start + cut.touched.dof(j)].0
+        };
+        let of_host = |kind: RowKind| {
+            let is_of_host = move |number: &usize| kind != RowKind::Equality || *number < parts.judged();
+            cut.members(kind).numbers.iter().take_while(move |number| is_of_host(number)).count()
+        };
+        let columns = RowKind::ALL.into_iter().flat_map(|kind| {
+            let matrix = &cut.members(kind).rows.matrix;
+            (0..of_host(kind)).flat_map(|i| matrix.row(i)).map(|(j, _)| at(j))
+        });
+        let touched = Arc::new(Touched::of(&ranges, columns));
+        let column = |j: usize| {
+            let unknown = at(j);
+            let body = ranges.partition_point(|range: &Range<usize>| range.end <= unknown);
+            touched.place(body, unknown - ranges[body].start).unwrap_or_default()
+        };
+        let of_host = |kind| members(cut.members(kind), of_host(kind), touched.len(), column);
         let (contact, equalities) = (of_host(RowKind::Inequality)?, of_host(RowKind::Equality)?);
         let stiffness = |(body, part): (&usize, &Option<usize>)| match (&parts.assembled[*body], part) {
             (Some(k), _) => k.largest_diagonal(),
@@ -99,7 +118,7 @@ impl Whole {
         });
         let equalities = Arc::new(equalities);
         let (bodies, ranges) = (bodies.into(), Arc::new(ranges));
-        let island = Island { bodies, ranges, contact, equalities, friction, unit };
+        let island = Island { bodies, ranges, touched, contact, equalities, friction, unit };
         let bodies = threads::run(model.threads(), island.bodies.len(), |k| {
             let (body, part) = (island.bodies[k], part_of[k]);
             let made = whole_body(model, parts, (body, part), of_part);
@@ -116,31 +135,33 @@ impl Whole {
     }
 
     /// The weighted mean of the copies of every unknown.
-    fn mean(&self, of_pieces: &[f64]) -> Result<Vec<f64>> {
-        self.gathered(of_pieces, |share| share)
+    fn mean(&self, of_pieces: &ByBody) -> Result<ByBody> {
+        self.gathered(of_pieces.each(), |share| share)
     }
 
     /// The sum of the loads of the copies of every unknown.
-    fn loads(&self, data: &Data) -> Result<Vec<f64>> {
-        let mut all = zeros(self.place.len(), WHAT)?;
-        for body in &data.bodies {
-            body.load.iter().for_each(|load| all[body.range()].copy_from_slice(load));
-        }
-        self.gathered(&all, |_| 1.0)
+    fn loads(&self, data: &Data) -> Result<ByBody> {
+        let none = zeros(data.bodies.iter().map(|body| body.stiffness.order()).max().unwrap_or(0), WHAT)?;
+        let of_pieces = data.bodies.iter().map(|body| body.load.unwrap_or(&none[..body.stiffness.order()]));
+        self.gathered(of_pieces, |_| 1.0)
     }
 
-    fn gathered(&self, of_pieces: &[f64], weight: fn(f64) -> f64) -> Result<Vec<f64>> {
+    fn gathered<'v>(
+        &self,
+        of_pieces: impl Iterator<Item = &'v [f64]>,
+        weight: fn(f64) -> f64,
+    ) -> Result<ByBody> {
         let mut all = zeros(self.island.unknowns(), WHAT)?;
-        self.place.iter().zip(of_pieces).for_each(|((j, share), v)| all[*j] += weight(*share) * v);
-        Ok(all)
+        self.place.iter().zip(of_pieces.flatten()).for_each(|((j, share), v)| all[*j] += weight(*share) * v);
+        Ok(ByBody::of(&self.island.ranges, all))
     }
 
-    /// The data of the island for the certificate; `loads` over its unknowns.
-    fn data<'a>(&'a self, model: &'a SolvedModel, loads: &'a [f64]) -> Result<Data<'a>> {
+    /// The data of the island for the certificate.
+    fn data<'a>(&'a self, model: &'a SolvedModel, loads: &'a ByBody) -> Result<Data<'a>> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
         let parts = model.parts.as_ref().ok_or_else(missing)?;
         let mut bodies = reserved(self.bodies.len(), WHAT)?;
-        for ((&body, own), range) in self.island.bodies.iter().zip(&self.bodies).zip(&*self.island.ranges) {
+        for ((&body, own), load) in self.island.bodies.iter().zip(&self.bodies).zip(loads.each()) {
             let stiffness = match (&parts.assembled[body], own.part) {
                 (Some(k), _) => Some(crate::body::Stiffness::Assembled(k)),
                 (None, Some(part)) => model.bodies[part].body.k(),
@@ -149,9 +170,8 @@ impl Whole {
             let stiffness = stiffness.ok_or_else(missing)?;
             let largest = stiffness.largest_diagonal();
             bodies.push(BodyData {
-                start: range.start,
                 stiffness,
-                load: Some(&loads[range.clone()]),
+                load: Some(load),
                 null_space: own.null_space.vectors(),
                 soft: own.soft,
                 unit: if largest > 0.0 { power_of_two_below(largest) } else { self.island.unit },
@@ -160,6 +180,8 @@ impl Whole {
         }
         Ok(Data {
             bodies,
+            ranges: &self.island.ranges,
+            touched: &self.island.touched,
             contact: &self.island.contact.rows,
             equalities: &self.island.equalities.rows,
             tangential: &self.island.friction.tangential.rows,
@@ -185,24 +207,17 @@ impl Whole {
     }
 }
 
-/// The rows between bodies of the host, over the unknowns of these bodies.
-fn members(
-    cut: &Members,
-    unknowns: usize,
-    kind: RowKind,
-    parts: &Parts,
-    place: &[(usize, f64)],
-) -> Result<Members> {
-    let of_host = |number: &&usize| kind != RowKind::Equality || **number < parts.judged();
-    let numbers: Vec<usize> = cut.numbers.iter().take_while(of_host).copied().collect();
-    let mut matrix = Csr::empty(unknowns);
-    for i in 0..numbers.len() {
-        let mut entries: Vec<(usize, f64)> = cut.rows.matrix.row(i).map(|(j, v)| (place[j].0, v)).collect();
+/// The first `count` rows, which are those of the host, over the touched unknowns of its bodies.
+fn members(cut: &Members, count: usize, columns: usize, column: impl Fn(usize) -> usize) -> Result<Members> {
+    let numbers = cut.numbers[..count].to_vec();
+    let mut matrix = Csr::empty(columns);
+    for i in 0..count {
+        let mut entries: Vec<(usize, f64)> = cut.rows.matrix.row(i).map(|(j, v)| (column(j), v)).collect();
         entries.sort_unstable_by_key(|entry| entry.0);
         matrix.push_row(entries);
     }
-    let rhs = copied(&cut.rows.rhs[..numbers.len()], WHAT)?;
-    let compliance = copied(&cut.rows.compliance[..numbers.len()], WHAT)?.into();
+    let rhs = copied(&cut.rows.rhs[..count], WHAT)?;
+    let compliance = copied(&cut.rows.compliance[..count], WHAT)?.into();
     let rows = RowSet { matrix: Arc::new(matrix), rhs, compliance, taken: cut.rows.taken.clone() };
     Ok(Members { rows, numbers })
 }

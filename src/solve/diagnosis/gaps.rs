@@ -154,14 +154,14 @@ impl<'a> Contradictions<'a> {
         Ok((work / self.case.ready.island.unit).sqrt())
     }
 
-    /// D^ of all rows, over U.
+    /// D^ of all rows, over U, where they touch.
     fn metric(&self) -> Result<&[f64]> {
         if let Some(metric) = self.metric.get() {
             return Ok(metric);
         }
         let data = self.case.data()?;
         let rows = RowKind::ALL.map(|kind| data.rows(kind));
-        let metric = led(&data.metered(), rows, &|_, _| true, self.case.ready.island.unit)?;
+        let metric = led(&data.metered(), data.touched, rows, &|_, _| true, self.case.ready.island.unit)?;
         Ok(self.metric.get_or_init(|| metric))
     }
 

@@ -6,6 +6,7 @@ use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::graph::joined;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
+use crate::linalg::ByBody;
 use crate::model::Accuracy;
 use crate::numbers::solve::{BEYOND, LOAD_RANGE};
 use crate::platform::memory::zeros;
@@ -20,12 +21,12 @@ use crate::solve::scaled::Scaled;
 /// equality rows or by rows with a force move together: a cluster. Shares are relative to the cluster's load, |f|_{D^-1}
 /// without grounded unknowns.
 pub struct Unheld {
-    /// D R c over the unknowns of the island, in units of 2^p: the part not held, as a load.
-    pub load: Vec<f64>,
+    /// D R c, in units of 2^p: the part not held, as a load.
+    pub load: ByBody,
     /// c over the modes of the dual.
     pub amplitudes: Vec<f64>,
     /// R c, the motion that this part causes.
-    motion: Vec<f64>,
+    motion: ByBody,
     /// The forces of the dual that leave this part.
     pub x: Vec<f64>,
     /// The largest |D R c|_{D^-1} / |f|_{D^-1} of a cluster.
@@ -56,8 +57,8 @@ impl Unheld {
     /// on a body with a small one; `None` without loads.
     pub fn relative(case: Case, scaled: &Scaled, far: &[bool]) -> Result<Option<Self>> {
         let ready = case.ready;
-        let load = free(&case.data()?, scaled.load.clone());
-        let sizes = ready.dual.sizes_of_loads(&load, &ready.rows.metric);
+        let load = case.data()?.without_grounded(scaled.load.clone());
+        let sizes = ready.dual.sizes_of_loads(&load, &ready.metric);
         let most = norm_max(&sizes);
         let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(LOAD_RANGE * most)).collect();
         (most > 0.0).then(|| Self::nearest(case, scaled, far, &weights)).transpose()
@@ -76,21 +77,21 @@ impl Unheld {
 
     /// For the forces x of the dual, which leave `rest` = e - G x.
     fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
-        let (island, metric) = (&ready.island, &ready.rows.metric);
-        let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, island.unknowns(), metric);
-        let sizes = |load: &[f64]| -> Vec<f64> {
-            let of_body = |range: &std::ops::Range<usize>| {
-                weighted_norm(&load[range.clone()], |j| 1.0 / metric[range.start + j])
-            };
-            island.ranges.iter().map(of_body).collect()
+        let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, &ready.metric);
+        let sizes = |load: &ByBody| -> Vec<f64> {
+            load.each().enumerate().map(|(p, load)| ready.force(p, load)).collect()
         };
         let load = as_load(rest);
         let sizes_of_modes = ready.dual.sizes_of_modes();
         let amplitudes = rest.iter().zip(sizes_of_modes).map(|(e, size)| size * size * e).collect();
-        let motion = load.iter().zip(metric).map(|(f, d)| f / d).collect();
-        let load = free(data, load);
-        let (left, resultants) = (sizes(&load), sizes(&free(data, as_load(&scaled.resultants))));
-        let loads = sizes(&free(data, scaled.load.clone()));
+        let mut motion = load.clone();
+        for (p, d) in ready.metric.each().enumerate() {
+            motion.on_mut(p).iter_mut().zip(d).for_each(|(f, d)| *f /= d);
+        }
+        let load = data.without_grounded(load);
+        let resultants = data.without_grounded(as_load(&scaled.resultants));
+        let (left, resultants) = (sizes(&load), sizes(&resultants));
+        let loads = sizes(&data.without_grounded(scaled.load.clone()));
         let (cluster, count) = clusters(ready, &x, &left);
         let of_cluster = |k: usize, sizes: &[f64]| {
             let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
@@ -132,7 +133,7 @@ impl Unheld {
 
     /// The load to subtract from the loads; none if neither `share` nor the share of a single body exceeds rounding:
     /// then only the resultants change.
-    pub fn load_to_take(&self, share: f64) -> Option<&[f64]> {
+    pub fn load_to_take(&self, share: f64) -> Option<&ByBody> {
         (share.max(self.of_body) > self.accuracy.data).then_some(&self.load)
     }
 
@@ -156,42 +157,41 @@ impl Unheld {
                 self.shares[p] > 0.0
             }];
         for moves in moves {
-            let mut own = vec![0.0; self.motion.len()];
+            let mut own = self.motion.clone();
             let moved: Vec<usize> = (0..self.loads.len()).filter(|&p| moves(p)).collect();
-            moved.iter().map(|&p| island.ranges[p].clone()).for_each(|range| {
-                own[range.clone()].copy_from_slice(&self.motion[range]);
-            });
+            (0..self.loads.len()).filter(|p| !moved.contains(p)).for_each(|p| own.on_mut(p).fill(0.0));
             let size = weighted_norm(&moved.iter().map(|&p| self.loads[p]).collect::<Vec<_>>(), |_| 1.0);
             let mut work = Twofold::default();
-            scaled.load.iter().zip(&own).for_each(|(f, v)| work.add_product(*f, *v));
-            let resisted = BEYOND * (resistance(ready, &own) + strain(case, &own)?);
-            if work.value() - bounded(ready, &own) > size * resisted {
+            let loads = scaled.load.each().flatten().zip(own.each().flatten());
+            loads.for_each(|(f, v)| work.add_product(*f, *v));
+            let at = island.touched.at(&own);
+            let resisted = BEYOND * (resistance(ready, &at) + strain(case, &own)?);
+            if work.value() - bounded(ready, &at) > size * resisted {
                 let mut v = zeros(case.model.sizes().dofs, "a motion")?;
                 island.scatter(case.model, &own, &mut v);
-                let why = self.why(case, &own, work.value());
+                let why = self.why(case, (&own, &at), work.value());
                 return Ok(Some(self.named(case, v, &why)));
             }
         }
         Ok(None)
     }
 
-    /// What the rows on the bodies that move by v (`own`) do about it; `work`: f'v in units of 2^p.
-    fn why(&self, case: Case, own: &[f64], work: f64) -> String {
+    /// What the rows on the bodies that move by v do about it, v `at` the rows; `work`: f'v in units of 2^p.
+    fn why(&self, case: Case, (v, at): (&ByBody, &[f64]), work: f64) -> String {
         let (ready, island) = (case.ready, case.island());
-        let moves = |range: &std::ops::Range<usize>| own[range.clone()].iter().any(|v| *v != 0.0);
-        let moved: Vec<bool> = island.ranges.iter().map(moves).collect();
+        let moved: Vec<bool> = v.each().map(|v| v.iter().any(|v| *v != 0.0)).collect();
         let touching: Vec<usize> = (0..ready.rows.tangential)
             .filter(|&i| {
                 let (rows, k) = island.row(i);
-                rows.matrix.row(k).any(|(j, b)| b != 0.0 && moved[island.body_of(j)])
+                rows.matrix.row(k).any(|(j, b)| b != 0.0 && moved[island.touched.body_of(j)])
             })
             .collect();
-        let rubs = |node: &&FrictionNode| node.has_friction() && slip(ready, node, own) > 0.0;
+        let rubs = |node: &&FrictionNode| node.has_friction() && slip(ready, node, at) > 0.0;
         let rubbing = island.friction.nodes.iter().filter(rubs).count();
         let opened =
-            touching.iter().filter(|&&i| i < ready.rows.contact && along(ready, i, own) < 0.0).count();
+            touching.iter().filter(|&&i| i < ready.rows.contact && along(ready, i, at) < 0.0).count();
         if rubbing > 0 {
-            let held = 100.0 * bounded(ready, own) / work;
+            let held = 100.0 * bounded(ready, at) / work;
             return format!(
                 "; the friction of {rubbing} nodes gives way: it can hold {held:.3} % of the load along the motion"
             );
@@ -229,25 +229,19 @@ impl Unheld {
     }
 }
 
-/// A load without the part on grounded unknowns, which no rigid motion moves.
-pub fn free(data: &Data, mut load: Vec<f64>) -> Vec<f64> {
-    data.grounded().for_each(|j| load[j] = 0.0);
-    load
-}
-
 /// Cluster of each body, and the number of clusters.
 fn clusters(ready: &Ready, x: &[f64], left: &[f64]) -> (Vec<usize>, usize) {
     let (rows, island) = (&ready.rows, &ready.island);
     let forces = rows.scaling.decoupling.solve_transposed(x.to_vec());
     let joins = (0..forces.len()).filter(|&i| forces[i] != 0.0 || rows.kind(i) == RowKind::Equality);
     let bodies = joins.map(|i| {
-        let touched = rows.scaled.row(i).map(|(j, _)| island.body_of(j));
+        let touched = rows.scaled.row(i).map(|(j, _)| island.touched.body_of(j));
         touched.filter(|&p| left[p] > 0.0)
     });
     joined(left.len(), bodies)
 }
 
-/// `|(S (B v + mu |T v|))_+, S_H H v|` by the rows of the host: forces within their cones do no more work.
+/// `|(S (B v + mu |T v|))_+, S_H H v|` by the rows of the host, v where rows touch: forces within their cones do no more work.
 pub fn resistance(ready: &Ready, v: &[f64]) -> f64 {
     let rows = &ready.rows;
     let mut all: Vec<f64> = (0..rows.tangential).map(|i| along(ready, i, v)).collect();
@@ -280,11 +274,10 @@ fn along(ready: &Ready, i: usize, v: &[f64]) -> f64 {
 }
 
 /// `|K v|_{D^-1}` in units of 2^p.
-fn strain(case: Case, v: &[f64]) -> Result<f64> {
-    let Ready { rows, island, .. } = case.ready;
-    let mut strained = zeros(v.len(), "the strain of a motion")?;
-    for body in &case.data()?.bodies {
-        body.stiffness.mul(&v[body.range()], &mut strained[body.range()])?;
+fn strain(case: Case, v: &ByBody) -> Result<f64> {
+    let mut strained = ByBody::zeros(&case.island().ranges, "the strain of a motion")?;
+    for (p, body) in case.data()?.bodies.iter().enumerate() {
+        body.stiffness.mul(v.on(p), strained.on_mut(p))?;
     }
-    Ok(weighted_norm(&strained, |j| 1.0 / rows.metric[j]) / island.unit)
+    Ok(case.ready.force_of_all(&strained) / case.island().unit)
 }

@@ -1,5 +1,7 @@
 use super::*;
+use crate::linalg::by_body::Ranges;
 use crate::qp::AnswerFace;
+use std::sync::Arc;
 
 /// Blocks of four unknowns, (x, y) of two points, which slide along x and y and rotate; the unknowns have different
 /// weights.
@@ -21,7 +23,7 @@ impl FreeBlocks {
     fn solve(&self, rows: &Csr, gaps: &[f64], lambda: &[f64], u: &[f64]) -> (Rest, usize) {
         let bodies: Vec<Moving> = (0..self.count)
             .map(|p| Moving {
-                unknowns: 4 * p..4 * p + 4,
+                grounded: &[],
                 modes: 3 * p..3 * p + 3,
                 null_space: &self.null_space,
                 rounding: 1e-14,
@@ -37,17 +39,18 @@ impl FreeBlocks {
         }
         let held: Vec<bool> = lambda.iter().map(|lambda| *lambda <= 0.0).collect();
         let amplitudes = AnswerFace::new(&g_transposed, &[], &held, 1.5e-14).unwrap().undetermined().unwrap();
+        let ranges: Ranges = Arc::new((0..self.count).map(|p| 4 * p..4 * p + 4).collect());
         let open = OpenMotions {
             bodies: &bodies,
             amplitudes: &amplitudes,
-            metric: &self.metric,
-            grounded: &vec![false; 4 * self.count],
+            metric: &ByBody::of(&ranges, self.metric.clone()),
+            touched: &Touched::of(&ranges, 0..4 * self.count),
             rows,
             gaps,
             compliance: &vec![0.0; gaps.len()],
             lambda,
         };
-        (travel(&open, u, vec![0.0; 3 * self.count]).unwrap(), amplitudes.cols)
+        (travel(&open, &ByBody::of(&ranges, u.to_vec()), vec![0.0; 3 * self.count]).unwrap(), amplitudes.cols)
     }
 
     fn length(&self, u: &[f64]) -> f64 {
@@ -67,9 +70,12 @@ fn a_block_slides_back_as_far_as_the_wall_allows_whatever_the_start() {
     for (slide, wall) in [(3.0, -0.25), (1e6, -0.25), (0.5, f64::INFINITY), (1e9, 1e30)] {
         let u = [slide, 0.1, slide + 0.01, -0.1];
         let (at_rest, free) = blocks.solve(&rows, &[-0.1, 0.1, wall, 1e20], &[1.0, 2.0, 0.0, 0.0], &u);
-        let x = at_rest.u[0];
-        assert!(free == 1 && (at_rest.u[2] - x - 0.01).abs() < 1e-9 * slide, "{free} {x}");
-        assert!((at_rest.u[1] - 0.1).abs().max((at_rest.u[3] + 0.1).abs()) <= 1e-15 * slide);
+        let x = at_rest.u.in_sequence()[0];
+        assert!(free == 1 && (at_rest.u.in_sequence()[2] - x - 0.01).abs() < 1e-9 * slide, "{free} {x}");
+        assert!(
+            (at_rest.u.in_sequence()[1] - 0.1).abs().max((at_rest.u.in_sequence()[3] + 0.1).abs())
+                <= 1e-15 * slide
+        );
         // without the wall: x + 3 (x + 0.01) = 0, the weights being 1 and 3
         let expected = if wall < 0.0 { 0.25 } else { -0.03 / 4.0 };
         assert!((x - expected).abs() <= 1e-15 * slide + 1e-15, "{slide} {wall}: {x}");
@@ -106,12 +112,14 @@ fn three_hundred_loose_blocks_go_back_and_stay() {
             .collect();
         let gaps_now = if travelled == 0.0 { gaps.clone() } else { open };
         let (Rest { u: answer, .. }, free) = blocks.solve(&rows, &gaps_now, &lambda, &u);
+        let answer = answer.in_sequence().to_vec();
         assert_eq!(free, 150 + 2 * 150);
         let met = |i: usize| rows.row_dot(i, &answer) <= gaps_now[i] + 1e-15 * (1.0 + travelled);
         assert!((0..rows.rows()).filter(|&i| lambda[i] == 0.0).all(met));
         assert!(blocks.length(&answer) <= blocks.length(&u));
         let (again, _) = blocks.solve(&rows, &gaps_now, &lambda, &answer);
-        let further = again.u.iter().zip(&answer).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        let further =
+            again.u.in_sequence().iter().zip(&answer).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         assert!(further <= 1e-14 * (1.0 + travelled), "{further:e}");
         answers.push(answer);
     }
@@ -119,27 +127,35 @@ fn three_hundred_loose_blocks_go_back_and_stay() {
     assert!(far < 1.0, "{far}");
 }
 
+fn one_body(unknowns: usize) -> Ranges {
+    Arc::new(std::iter::once(0..unknowns).collect())
+}
+
+fn of_one_body(v: &[f64]) -> ByBody {
+    ByBody::of(&one_body(v.len()), v.to_vec())
+}
+
 /// A motion is exactly 0 on a grounded unknown, and grounded unknowns do not change its rows.
 #[test]
 fn grounded_unknowns_stay_to_the_last_bit() {
     let null_space = Matrix { rows: 3, cols: 1, data: vec![1.0, 1.0, 1e-20] };
-    let bodies = [Moving { unknowns: 0..3, modes: 0..1, null_space: &null_space, rounding: 1e-14 }];
+    let bodies = [Moving { grounded: &[2], modes: 0..1, null_space: &null_space, rounding: 1e-14 }];
     let amplitudes = Matrix { rows: 1, cols: 1, data: vec![2.0] };
     let mut rows = Csr::empty(3);
     rows.push_row([(0, 1.0), (2, -1.0)]);
     let open = OpenMotions {
         bodies: &bodies,
         amplitudes: &amplitudes,
-        metric: &[1.0, 1.0, 1e20],
-        grounded: &[false, false, true],
+        metric: &of_one_body(&[1.0, 1.0, 1e20]),
+        touched: &Touched::of(&one_body(3), 0..3),
         rows: &rows,
         gaps: &[1.0],
         compliance: &[0.0],
         lambda: &[0.0],
     };
     for start in [0.0, 1.0, 1e10] {
-        let at_rest = travel(&open, &[-5.0, -5.0, -2.0], vec![start]).unwrap();
-        assert_eq!(at_rest.u, [-1.0, -1.0, -2.0]);
+        let at_rest = travel(&open, &of_one_body(&[-5.0, -5.0, -2.0]), vec![start]).unwrap();
+        assert_eq!(at_rest.u.in_sequence(), [-1.0, -1.0, -2.0]);
         assert_eq!(at_rest.amplitudes, [4.0]);
     }
 }
@@ -148,20 +164,21 @@ fn grounded_unknowns_stay_to_the_last_bit() {
 #[test]
 fn a_grounded_unknown_that_hangs_on_another_moves_with_it() {
     let null_space = Matrix { rows: 2, cols: 1, data: vec![1.0, 1.0] };
-    let bodies = [Moving { unknowns: 0..2, modes: 0..1, null_space: &null_space, rounding: 1e-14 }];
+    let bodies = [Moving { grounded: &[1], modes: 0..1, null_space: &null_space, rounding: 1e-14 }];
     let open = OpenMotions {
         bodies: &bodies,
         amplitudes: &Matrix { rows: 1, cols: 1, data: vec![1.0] },
-        metric: &[1.0, 1e-3],
-        grounded: &[false, true],
+        metric: &of_one_body(&[1.0, 1e-3]),
+        touched: &Touched::of(&one_body(2), 0..2),
         rows: &Csr::empty(2),
         gaps: &[],
         compliance: &[],
         lambda: &[],
     };
-    let at_rest = travel(&open, &[-5.0, -1000.0], vec![2.0]).unwrap();
+    let at_rest = travel(&open, &of_one_body(&[-5.0, -1000.0]), vec![2.0]).unwrap();
     // a - 5 + 1e-3 (a - 1000) = 0
     let a = 6.0 / 1.001;
     assert!((at_rest.amplitudes[0] - a).abs() < 1e-13);
-    assert!((at_rest.u[0] - (a - 5.0)).abs() < 1e-13 && (at_rest.u[1] - (a - 1000.0)).abs() < 1e-11);
+    let u = at_rest.u.in_sequence();
+    assert!((u[0] - (a - 5.0)).abs() < 1e-13 && (u[1] - (a - 1000.0)).abs() < 1e-11);
 }

@@ -1,0 +1,82 @@
+//! A vector over the unknowns of several bodies, which is read and changed body by body: what decides sees sizes, amplitudes, and
+//! values at the unknowns that rows touch.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::linalg::vector::axpy;
+use crate::platform::memory::{copied, filled};
+
+/// Where each body begins and ends among all unknowns.
+pub type Ranges = Arc<Vec<Range<usize>>>;
+
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ByBody<T = f64> {
+    ranges: Ranges,
+    values: Vec<T>,
+}
+
+impl<T: Copy> ByBody<T> {
+    /// The same value everywhere; `what` names the vector in errors.
+    pub fn filled(ranges: &Ranges, value: T, what: &str) -> Result<Self> {
+        let values = filled(ranges.last().map_or(0, |range| range.end), value, what)?;
+        Ok(Self { ranges: Arc::clone(ranges), values })
+    }
+
+    /// These values, body after body.
+    pub fn of(ranges: &Ranges, values: Vec<T>) -> Self {
+        Self { ranges: Arc::clone(ranges), values }
+    }
+
+    /// Of each body its own.
+    pub fn from_each<O: AsRef<[T]>>(ranges: &Ranges, own: impl IntoIterator<Item = O>) -> Self {
+        let mut values = Vec::with_capacity(ranges.last().map_or(0, |range| range.end));
+        own.into_iter().for_each(|own| values.extend_from_slice(own.as_ref()));
+        Self::of(ranges, values)
+    }
+
+    /// The values of body p.
+    pub fn on(&self, p: usize) -> &[T] {
+        &self.values[self.ranges[p].clone()]
+    }
+
+    pub fn on_mut(&mut self, p: usize) -> &mut [T] {
+        &mut self.values[self.ranges[p].clone()]
+    }
+
+    /// The values of every body.
+    pub fn each(&self) -> impl Iterator<Item = &[T]> + '_ {
+        self.ranges.iter().map(|range| &self.values[range.clone()])
+    }
+
+    /// All values, body after body: for what needs K of all bodies in one place.
+    pub fn in_sequence(&self) -> &[T] {
+        &self.values
+    }
+
+    /// The image of each value.
+    pub fn map<U: Copy>(&self, of: impl Fn(T) -> U) -> ByBody<U> {
+        ByBody { ranges: Arc::clone(&self.ranges), values: self.values.iter().map(|v| of(*v)).collect() }
+    }
+
+    /// Changes each value.
+    pub fn change(&mut self, change: impl FnMut(&mut T)) {
+        self.values.iter_mut().for_each(change);
+    }
+}
+
+impl ByBody {
+    pub fn zeros(ranges: &Ranges, what: &str) -> Result<Self> {
+        Self::filled(ranges, 0.0, what)
+    }
+
+    pub fn copied(&self, what: &str) -> Result<Self> {
+        Ok(Self { ranges: Arc::clone(&self.ranges), values: copied(&self.values, what)? })
+    }
+
+    /// `self += a x`
+    pub fn add(&mut self, a: f64, x: &Self) {
+        axpy(a, &x.values, &mut self.values);
+    }
+}
