@@ -1,23 +1,27 @@
 //! The accuracy of the host's data: of right-hand sides, by the lengths of bodies, and of normals, weights and
 //! coordinates, by option `data_accuracy`.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::body::Body;
 use crate::certificate::led;
-use crate::constraints::{RowKind, Touched};
+use crate::constraints::{RowKind, RowSet, Touched};
 use crate::error::Result;
+use crate::linalg::hash::{hash, START};
+use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::vector::{norm_max, NOISE};
 use crate::model::contents::SolvedModel;
 use crate::model::row_sets::empty_row_contradicts;
 use crate::numbers::data::{BINARY, MARGINAL, MOST_BY_COORDINATES};
-use crate::platform::memory::filled;
+use crate::platform::memory::{filled, reserved};
 
 /// A right-hand side below this part of the length is not the rounding of a difference of such lengths: it is exact.
 const LAST_DIGIT: f64 = f64::EPSILON / 64.0;
 
 /// Digits of coordinates that have been rounded: fewer may be exact, more are rounding of f64.
 const DIGITS: Range<i32> = 5..13;
+const WHAT: &str = "the lengths of bodies";
 /// Number of points whose digits are counted.
 const SAMPLE: usize = 256;
 
@@ -38,8 +42,10 @@ pub struct Lengths<'a> {
     /// Of the problem: the largest of all bodies and of the lengths `|h| / max |b|` and `-c / max |b|` that rows demand;
     /// without loads and coordinates also the smallest gap. Other gaps may be far: they say nothing.
     whole: f64,
-    /// Of every unknown, the number of rigid equality rows with it.
-    ties: Vec<u32>,
+    /// Unknowns of rigid equality rows.
+    tied: Vec<bool>,
+    /// Equality rows that others may contradict, if the right-hand side of any may be rounding.
+    core: Vec<bool>,
 }
 
 impl SolvedModel {
@@ -72,10 +78,18 @@ impl SolvedModel {
             .map(|i| self.equalities.rhs[i].abs() / self.equalities.largest_entry(i))
             .chain(gaps().map(|gap| -gap))
             .fold(length, f64::max);
-        let mut ties = vec![0; held.len()];
+        let mut tied = filled(held.len(), false, WHAT)?;
         let rigid = (0..self.equalities.len()).filter(|&i| self.equalities.compliance[i] == 0.0);
-        rigid.flat_map(|i| self.equalities.matrix.row(i)).for_each(|(j, _)| ties[j] += 1);
-        Ok(Lengths { model: self, of_bodies, whole: length, ties })
+        rigid.flat_map(|i| self.equalities.matrix.row(i)).for_each(|(j, _)| tied[j] = true);
+        let mut lengths = Lengths { model: self, of_bodies, whole: length, tied, core: Vec::new() };
+        let doubtful = |i: usize| {
+            let (c, limit) = (self.equalities.rhs[i], NOISE * length * self.equalities.largest_entry(i));
+            demands(RowKind::Equality, c) && is_rounding(c, limit)
+        };
+        if (0..self.equalities.len()).any(doubtful) {
+            lengths.core = core(&self.equalities)?;
+        }
+        Ok(lengths)
     }
 
     /// What holds every unknown, D^, force / length; infinite without stiffness.
@@ -83,7 +97,7 @@ impl SolvedModel {
         let n = self.sizes().dofs;
         let bodies = self.bodies.iter().map(|given| Some((given.body.k()?, f64::INFINITY)));
         let Some(bodies) = bodies.collect::<Option<Vec<_>>>() else {
-            return filled(n, f64::INFINITY, "the lengths of bodies");
+            return filled(n, f64::INFINITY, WHAT);
         };
         let ranges: Vec<_> = (0..bodies.len()).map(|p| self.range(p)).collect();
         led(&bodies, &Touched::of(&ranges, 0..n), RowKind::ALL.map(|kind| self.rows(kind)), &|_, _| true, 1.0)
@@ -96,6 +110,60 @@ impl SolvedModel {
         let printed = given.map(|coordinates| of_last_digit(coordinates.places())).fold(0.0, f64::max);
         self.settings.data_accuracy.max(printed.min(MOST_BY_COORDINATES))
     }
+}
+
+/// Rigid rows that others may contradict by the rounding of their right-hand sides: without those that an unknown of theirs alone
+/// satisfies, then those that this leaves with such an unknown, and so on. Rows that say the same contradict nothing.
+fn core(rows: &RowSet) -> Result<Vec<bool>> {
+    let (mut said, mut first) = (HashMap::new(), reserved(rows.len(), WHAT)?);
+    let is_rigid = |i: usize| rows.compliance[i] == 0.0;
+    first.extend((0..rows.len()).map(|i| if is_rigid(i) { said_first(rows, i, &mut said) } else { i }));
+    let mut core: Vec<bool> = (0..rows.len()).map(|i| is_rigid(i) && first[i] == i).collect();
+    let own = |i: usize| rows.matrix.row(i).map(move |(j, v)| (i, j, v));
+    let entries = || (0..rows.len()).filter(|&i| is_rigid(i) && first[i] == i).flat_map(own);
+    let (starts, row, _) = by_columns(rows.matrix.cols, entries, WHAT)?;
+    let mut left: Vec<usize> = starts.windows(2).map(|ends| ends[1] - ends[0]).collect();
+    let mut alone: Vec<usize> = (0..left.len()).filter(|&j| left[j] == 1).collect();
+    while let Some(j) = alone.pop() {
+        let Some(&i) = row[starts[j]..starts[j + 1]].iter().find(|i| core[**i]) else { continue };
+        core[i] = false;
+        for (k, _) in rows.matrix.row(i) {
+            left[k] -= 1;
+            alone.extend((left[k] == 1).then_some(k));
+        }
+    }
+    Ok(first.iter().map(|&i| core[i]).collect())
+}
+
+/// The first row of which this one is a multiple, with its right-hand side; `said`: those that are no multiples, by their unknowns.
+fn said_first(rows: &RowSet, i: usize, said: &mut HashMap<u64, Vec<usize>>) -> usize {
+    let leading = |i: usize| rows.matrix.row(i).next().map_or(1.0, |(_, b)| b);
+    let all = |i: usize| rows.matrix.row(i).chain([(usize::MAX, rows.rhs[i])]);
+    let is_multiple = |k: &usize| {
+        let by = leading(i) / leading(*k);
+        let near =
+            |((j, a), (l, b)): ((usize, f64), (usize, f64))| j == l && (a - by * b).abs() <= NOISE * a.abs();
+        all(i).count() == all(*k).count() && all(i).zip(all(*k)).all(near)
+    };
+    let same = said.entry(hash(START, rows.matrix.row(i).map(|(j, _)| j as u64))).or_default();
+    same.iter().copied().find(is_multiple).unwrap_or_else(|| {
+        same.push(i);
+        i
+    })
+}
+
+/// A right-hand side that demands a motion. Gaps that are open demand nothing.
+fn demands(kind: RowKind, c: f64) -> bool {
+    match kind {
+        RowKind::Inequality => c < 0.0,
+        RowKind::Equality => c != 0.0,
+        RowKind::Tangential => false,
+    }
+}
+
+/// A right-hand side of this rounding, unless it is too small to be rounding.
+fn is_rounding(c: f64, limit: f64) -> bool {
+    (LAST_DIGIT / NOISE * limit..limit).contains(&c.abs())
 }
 
 /// Twice the unit of the last digit of coordinates that have been rounded to a few decimal digits, relative to the distance of
@@ -138,31 +206,24 @@ impl Lengths<'_> {
     }
 
     /// The rounding of the right-hand side of row i of a kind, times its largest entry: 64 eps of the longest body that it
-    /// touches. Where rigid equality rows tie each unknown of a rigid row, or its bodies have no length, that of the problem: there
+    /// touches. Where rigid equality rows may contradict a rigid row, or its bodies have no length, that of the problem: there
     /// rounding contradicts, elsewhere, as beside a spring, it is as harmless as it is small.
     pub fn rounding(&self, kind: RowKind, i: usize) -> f64 {
         let (rows, ends) = (self.model.rows(kind), &self.model.offsets[1..]);
-        let itself = u32::from(kind == RowKind::Equality);
-        let is_tied = rows.compliance[i] == 0.0 && rows.matrix.row(i).all(|(j, _)| self.ties[j] > itself);
+        let is_tied = match kind {
+            RowKind::Equality => self.core.get(i).copied().unwrap_or_default(),
+            _ => rows.compliance[i] == 0.0 && rows.matrix.row(i).all(|(j, _)| self.tied[j]),
+        };
         let bodies = rows.matrix.row(i).map(|(j, _)| ends.partition_point(|end| *end <= j));
         let own = bodies.map(|p| self.of_bodies[p]).fold(0.0, f64::max);
         let length = if is_tied || own == 0.0 { self.whole } else { own };
         NOISE * length * rows.largest_entry(i)
     }
 
-    /// The right-hand side of row i of a kind; 0 if it demands a motion and is rounding. Gaps that are open demand nothing.
+    /// The right-hand side of row i of a kind; 0 if it demands a motion and is rounding.
     pub fn rhs(&self, kind: RowKind, i: usize) -> f64 {
         let c = self.model.rows(kind).rhs[i];
-        let demands = match kind {
-            RowKind::Inequality => c < 0.0,
-            RowKind::Equality => c != 0.0,
-            RowKind::Tangential => false,
-        };
-        if !demands {
-            return c;
-        }
-        let limit = self.rounding(kind, i);
-        if (LAST_DIGIT / NOISE * limit..limit).contains(&c.abs()) {
+        if demands(kind, c) && is_rounding(c, self.rounding(kind, i)) {
             0.0
         } else {
             c

@@ -103,6 +103,22 @@ fn an_interference_beside_a_body_that_travels_far_is_kept() {
     }
 }
 
+/// A value prescribed by several rows that say the same, which only the travel of another, far softer body could call rounding.
+#[test]
+fn a_value_that_two_rows_prescribe_is_kept_beside_a_body_that_travels_far() {
+    for (load, value) in [(1e10, 2e-5), (1e13, -5e-2)] {
+        let mut problem = pairs(1.0, &[[-0.6, 0.0], [load, 0.0]]);
+        add(&mut problem, RowKind::Equality, &[(1, -0.612)], -0.612 * value);
+        add(&mut problem, RowKind::Equality, &[(1, 0.371)], 0.371 * value);
+        add(&mut problem, RowKind::Equality, &[(0, 0.3), (1, -0.7)], 0.3);
+        add(&mut problem, RowKind::Equality, &[(0, -1.5), (1, 3.5)], -1.5);
+        assert!(is_solved(problem.solve()));
+        let u = problem.displacements().unwrap();
+        assert!((u[1] - value).abs() < 1e-14, "{load:e} {u:?}");
+        assert!((u[0] - 1.0 - 0.7 * value / 0.3).abs() < 1e-14, "{load:e} {u:?}");
+    }
+}
+
 /// u_0 = u_1 + .1, and a spring of 1/4 from u_0 to .5; the problem is so long that 64 eps of it exceed .5.
 #[test]
 fn a_spring_at_a_tied_unknown_keeps_its_length_beside_a_body_that_travels_far() {
