@@ -26,8 +26,9 @@ pub(super) struct Forces {
     /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. If there is no such load, the
     /// forces for the prescribed motion (`asked`) are added.
     everywhere: f64,
-    /// Deformation of every body, `U |delta|_D` without grounded unknowns, and of the island, force.
+    /// Deformation of every body, `U |delta|_D` without grounded unknowns, force.
     strains: Vec<f64>,
+    /// The same of the island without carried unknowns, whose deformation follows from the forces of rows, also of those that cancel.
     strain: f64,
     /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body and `(|f_j| + |r_j|) / |D_j u_j|` of a grounded unknown, no unit.
     pub leverage: f64,
@@ -55,13 +56,17 @@ impl Forces {
         let moved = if loads.iter().all(|load| *load == 0.0) { asked(field) } else { 0.0 };
         let strains = (0..field.data.bodies.len()).map(|p| {
             let (own, u, metric) = (deformation.own.on(p), field.answer.u.on(p), field.metric.on(p));
-            let strain = field.free(p, |j| positive(own[j] - NOISE * u[j].abs()));
-            field.unit * weighted_norm(&strain, |j| metric[j])
+            let mut strain = field.free(p, |j| positive(own[j] - NOISE * u[j].abs()));
+            let all = field.unit * weighted_norm(&strain, |j| metric[j]);
+            let touched = field.data.touched;
+            let carried = touched.range(p).zip(touched.dofs(p)).filter(|(j, _)| field.at.carried[*j]);
+            carried.for_each(|(_, dof)| strain[dof] = 0.0);
+            (all, field.unit * weighted_norm(&strain, |j| metric[j]))
         });
-        let strains: Vec<f64> = strains.collect();
+        let (strains, of_bodies): (Vec<f64>, Vec<f64>) = strains.unzip();
         let of_body = |(size, strain): (&Option<f64>, &f64)| ratio(size.unwrap_or(0.0), *strain);
         let leverage = sizes.iter().zip(&strains).map(of_body).fold(of_grounded(field), f64::max);
-        let strain = weighted_norm(&strains, |_| 1.0);
+        let strain = weighted_norm(&of_bodies, |_| 1.0);
         let unloaded = loads.iter().map(|load| *load <= NOISE * forces).collect();
         Self {
             sizes,

@@ -81,6 +81,24 @@ fn displacements_prescribed_by_penalty_hide_nothing() {
     }
 }
 
+/// A soft body that travels far, against the ground and a stiff one: three rows at rest around them carry forces of size `large` that
+/// cancel, so that the loads are lost in their rounding.
+#[test]
+fn forces_that_cancel_between_rows_of_carried_unknowns_excuse_nothing() {
+    for (far, large) in [(0.0, 1e10), (1.0, 1e10), (1e9, 1e10), (1e9, 1e14)] {
+        let soft = chain(&[], &[(0, 1e-9)]).loaded(&[(0, 0.4 + 1e-9 * far)]);
+        let parts = vec![chain(&[2.0], &[(1, 3.1)]).loaded(&[(0, 1.0)]), soft];
+        let rows = [vec![(2, 1.0)], vec![(0, 1.0), (2, -1.0)], vec![(0, -1.0)]];
+        let contact = rows.map(|row| (row, far, 0.0)).to_vec();
+        let mut model = DenseModel { parts, contact, active: vec![0], ..DenseModel::default() };
+        let mut answer = model.answer();
+        (model.contact[1].1, model.contact[2].1) = (answer.u[0] - answer.u[2], -answer.u[0]);
+        assert!(model.certificate(&answer).passed(), "{far:e}");
+        answer.lambda.iter_mut().for_each(|force| *force += large);
+        assert!(!model.certificate(&answer).passed(), "{far:e} {large:e}");
+    }
+}
+
 /// Load and force of the obstacle cancel to the part `left` of their size.
 #[test]
 fn loads_that_all_but_cancel_pass_by_their_rounding_and_forces_are_right() {
