@@ -1,13 +1,6 @@
 # ---- bodies: values, forms of a matrix, numbering
-foreach(driver values borrow numbering elements)
-  add_executable(c_${driver} c/${driver}.c)
-  target_link_libraries(c_${driver} PRIVATE handover_c)
-endforeach()
-foreach(driver values numbering elements)
-  add_executable(fortran_${driver} fortran/${driver}.f90)
-  set_target_properties(fortran_${driver} PROPERTIES Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${driver}_modules")
-  target_link_libraries(fortran_${driver} PRIVATE handover_fortran)
-endforeach()
+c_drivers(values borrow numbering elements)
+fortran_drivers(values numbering elements)
 
 claim_silent("C: new values on an old pattern cost one factorisation, refused ones nothing" $<TARGET_FILE:c_values>)
 claim_silent("C: borrowed values are not copied, rewritten in place they count for every body" $<TARGET_FILE:c_borrow>)

@@ -1,11 +1,6 @@
 # Problems as files, options as a text, what calls tell in words.
-foreach(driver file log)
-  add_executable(c_${driver} c/${driver}.c)
-  target_link_libraries(c_${driver} PRIVATE handover_c)
-  add_executable(fortran_${driver} fortran/${driver}.f90)
-  set_target_properties(fortran_${driver} PROPERTIES Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${driver}_modules")
-  target_link_libraries(fortran_${driver} PRIVATE handover_fortran)
-endforeach()
+c_drivers(file log)
+fortran_drivers(file log)
 set(FILES "${CMAKE_CURRENT_BINARY_DIR}/files")
 file(MAKE_DIRECTORY "${FILES}/c" "${FILES}/fortran" "${FILES}/memory")
 

@@ -26,10 +26,8 @@ claim_clean("valgrind finds nothing in calls with wrong arguments" $<TARGET_FILE
 claim_clean("valgrind finds nothing in calls with bad handles" $<TARGET_FILE:c_misuse>)
 claim_clean("valgrind finds nothing in calls with structs of other sizes" $<TARGET_FILE:c_old_callers>)
 
-add_executable(c_settings c/settings.c)
-target_link_libraries(c_settings PRIVATE handover_c)
-add_executable(fortran_settings fortran/settings.f90)
-target_link_libraries(fortran_settings PRIVATE handover_fortran)
+c_drivers(settings)
+fortran_drivers(settings)
 claim_silent("C: what is set is what is read" $<TARGET_FILE:c_settings>)
 claim_silent("Fortran: what is set is what is read, and chosen unknowns are fixed" $<TARGET_FILE:fortran_settings>)
 
