@@ -1,7 +1,7 @@
 !> Compliant rows by hand to 1e-10: a spring between bodies, a bed of springs under a rigid punch (a linear law of
 !> pressure and overclosure), an elastic support; rigid again they give the answer of rigid rows.
 program compliance
-  use case_problem, only: require
+  use case_problem, only: require, spring_and_block
   use feti_contact
   implicit none
   integer, parameter :: dp = kind(1.0d0)
@@ -17,18 +17,10 @@ contains
   subroutine a_spring_between_spring_and_block
     type(feti_problem) :: p
     real(dp), parameter :: inv_k(4) = [0.0_dp, 1.0_dp, 1e-3_dp, 0.0_dp]
-    real(dp) :: held(1, 0), u(2), lambda(1), gap(1), image(1), rigid
-    integer :: body, i
+    real(dp) :: u(2), lambda(1), gap(1), image(1), rigid
+    integer :: i
 
-    call feti_problem_create(p)
-    call feti_body_add(p, 1, body)
-    call feti_body_add(p, 2, body)
-    call feti_body_stiffness(p, 1, [1, 2], [1], [1000.0_dp], FETI_LOWER)
-    call feti_body_stiffness(p, 2, [1, 2, 4], [1, 1, 2], [4000.0_dp, -4000.0_dp, 4000.0_dp], FETI_LOWER)
-    call feti_body_null_space(p, 1, held, FETI_EXACT)
-    call feti_body_null_space(p, 2, reshape([1.0_dp, 1.0_dp], [2, 1]), FETI_EXACT)
-    call feti_body_load(p, 2, [0.0_dp, -100.0_dp])
-    call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [1, 2], [1, 1], [1.0_dp, -1.0_dp], [0.5_dp])
+    call spring_and_block(p, [1000.0_dp, 4000.0_dp], -100.0_dp, 0.5_dp)
     do i = 1, size(inv_k)
       call feti_rows_compliance(p, FETI_INEQUALITY, 1, inv_k(i:i))
       call feti_solve(p)

@@ -1,7 +1,7 @@
 !> A refused call has its status, a text that names the place counting from 1, changes nothing, and the problem is
 !> corrected and solved afterwards.
 program errors
-  use case_problem, only: require
+  use case_problem, only: require, spring_and_block
   use feti_contact
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   implicit none
@@ -58,24 +58,13 @@ contains
     call require(nint(detail%value) == number, trim(detail%function) // ': the detail has another index than the call')
   end subroutine
 
-  !> Spring (1 unknown, held) and block (2 unknowns, floating) with the gap 0.5 between them; force: on the rear of
-  !> the block, to the left where negative.
-  subroutine spring_and_block(p, force)
+  !> Spring and block of every test here, with this force on the rear of the block; nothing has failed yet.
+  subroutine begin(p, force)
     type(feti_problem), intent(out) :: p
     real(dp), intent(in) :: force
-    real(dp) :: held(1, 0)
-    integer :: body
 
     text = untouched
-    call feti_problem_create(p)
-    call feti_body_add(p, 1, body)
-    call feti_body_add(p, 2, body)
-    call feti_body_stiffness(p, 1, [1, 2], [1], [1000.0_dp], FETI_LOWER)
-    call feti_body_stiffness(p, 2, [1, 2, 4], [1, 1, 2], [4000.0_dp, -4000.0_dp, 4000.0_dp], FETI_LOWER)
-    call feti_body_null_space(p, 1, held, FETI_EXACT)
-    call feti_body_null_space(p, 2, reshape([1.0_dp, 1.0_dp], [2, 1]), FETI_EXACT)
-    call feti_body_load(p, 2, [0.0_dp, force])
-    call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [1, 2], [1, 1], [1.0_dp, -1.0_dp], [0.5_dp])
+    call spring_and_block(p, [1000.0_dp, 4000.0_dp], force, 0.5_dp)
   end subroutine
 
   !> Solves and compares with the answer by hand for 100 N to the left.
@@ -98,7 +87,7 @@ contains
     real(dp) :: nan
 
     nan = ieee_value(1.0_dp, ieee_quiet_nan)
-    call spring_and_block(p, -100.0_dp)
+    call begin(p, -100.0_dp)
 
     call feti_body_load(p, 2, [1.0_dp, 2.0_dp, 3.0_dp], stat, text)
     call expect_refused(3, 'feti_body_load', ['body 2', '3     ', '2     '])
@@ -164,7 +153,7 @@ contains
     integer :: none(0)
     real(dp) :: y(2, 1)
 
-    call spring_and_block(p, -100.0_dp)
+    call begin(p, -100.0_dp)
     call feti_body_stiffness(p, 2, [1, 2, 4], [1, 1], [1.0_dp, 1.0_dp], FETI_LOWER, stat, text)
     call expect(FETI_ARGUMENT - 5, 'row_ptr behind the end of col')
     call feti_body_stiffness(p, 2, none, [1], [1.0_dp], FETI_LOWER, stat, text)
@@ -211,7 +200,7 @@ contains
     type(feti_problem) :: p
     type(feti_error_detail) :: detail
 
-    call spring_and_block(p, 100.0_dp)
+    call begin(p, 100.0_dp)
     call feti_solve(p, stat=stat, errmsg=text)
     call require(index(text, 'body 2') > 0, 'the text does not name body 2: ' // trim(text))
     call expect(FETI_LOAD_NOT_HELD, 'a load that pulls the block away')
@@ -243,7 +232,7 @@ contains
     type(feti_problem) :: p, copy, never_created
     integer :: body
 
-    call spring_and_block(p, -100.0_dp)
+    call begin(p, -100.0_dp)
     copy = p
     call solve_and_compare(copy, 'through a copy')
     call feti_problem_destroy(p, stat, text)
@@ -267,7 +256,7 @@ contains
     character(len=9) :: short
     type(feti_error_detail) :: detail
 
-    call spring_and_block(p, -100.0_dp)
+    call begin(p, -100.0_dp)
     short = untouched
     call feti_body_load(p, 2, [1.0_dp], stat, short)
     call feti_last_error(whole)
@@ -287,8 +276,8 @@ contains
     type(feti_problem) :: p, other
     real(dp) :: lambda(1)
 
-    call spring_and_block(other, -100.0_dp)
-    call spring_and_block(p, -100.0_dp)
+    call begin(other, -100.0_dp)
+    call begin(p, -100.0_dp)
     call feti_set(p, 'fault_injection', 1)
     call feti_solve(p, stat=stat, errmsg=text)
     call expect(FETI_INTERNAL, 'a panic')

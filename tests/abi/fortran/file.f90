@@ -1,7 +1,7 @@
 ! file DATA FOLDER: a problem goes through a file and solves to the same bits; damaged files and texts are refused.
 program file
   use case_reader
-  use case_problem, only: data_folder, hand_over, from_basis, require
+  use case_problem, only: data_folder, handed_over, require
   use feti_contact
   implicit none
 
@@ -31,9 +31,8 @@ contains
     integer :: base
 
     call read_case(data_folder(), name, host)
-    call feti_problem_create(p)
     call feti_problem_create(back)
-    call hand_over(p, host, from_basis)
+    call handed_over(p, host)
     call feti_set_text(p, 'finish = direct, tolerance = 1d-11')
     call feti_problem_write(p, path)
     call feti_problem_read(back, path)

@@ -3,46 +3,25 @@
 program groups_driver
   use, intrinsic :: iso_fortran_env, only: dp => real64
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_positive_inf, ieee_value
+  use case_problem, only: require, spring_and_block
   use feti_contact
   implicit none
-  integer :: faults = 0, stat
+  integer :: stat
   character(len=400) :: text
 
   call one_group_without_an_answer
   call a_row_that_never_closes
-  if (faults > 0) error stop 1
 
 contains
-
-  subroutine require(holds, what)
-    logical, intent(in) :: holds
-    character(len=*), intent(in) :: what
-
-    if (holds) return
-    faults = faults + 1
-    print '(a)', what
-  end subroutine
 
   !> Springs 2 (bodies 1, 3) with blocks of two unknowns joined by 4 (bodies 2, 4) pressed against them by 6 at distance 1:
   !> lambda = 6, u = -3; -4, -5.5.
   subroutine springs_and_blocks(p, groups)
     type(feti_problem), intent(inout) :: p
     integer, intent(in) :: groups
-    real(dp) :: held(1, 0), rigid(2, 1)
-    integer :: k, spring, block
 
-    rigid = 1
-    call feti_problem_create(p)
-    do k = 1, groups
-      call feti_body_add(p, 1, spring)
-      call feti_body_add(p, 2, block)
-      call feti_body_stiffness(p, spring, [1, 2], [1], [2.0_dp], FETI_LOWER)
-      call feti_body_stiffness(p, block, [1, 2, 4], [1, 1, 2], [4.0_dp, -4.0_dp, 4.0_dp], FETI_LOWER)
-      call feti_body_null_space(p, spring, held, FETI_EXACT)
-      call feti_body_null_space(p, block, rigid, FETI_EXACT)
-      call feti_body_load(p, block, [0.0_dp, -6.0_dp])
-      call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [spring, block], [1, 1], [1.0_dp, -1.0_dp], [1.0_dp])
-    end do
+    call spring_and_block(p, [2.0_dp, 4.0_dp], -6.0_dp, 1.0_dp)
+    if (groups == 2) call spring_and_block(p, [2.0_dp, 4.0_dp], -6.0_dp, 1.0_dp, more=.true.)
   end subroutine
 
   subroutine force_error_on(p, body, force_error)

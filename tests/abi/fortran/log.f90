@@ -36,7 +36,7 @@ end module
 
 program log_lines
   use case_reader
-  use case_problem, only: data_folder, hand_over, from_basis, require
+  use case_problem, only: data_folder, handed_over, require
   use feti_contact
   use writers
   implicit none
@@ -50,8 +50,7 @@ program log_lines
   integer :: stat
 
   call read_case(data_folder(), 'p1_P3', wall)
-  call feti_problem_create(p)
-  call hand_over(p, wall, from_basis)
+  call handed_over(p, wall)
 
   call feti_on_log(p, note, FETI_LOG_RESULT, heard)
   call feti_solve(p)

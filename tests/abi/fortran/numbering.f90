@@ -4,7 +4,7 @@
 !> A spring of stiffness 2 and a floating block of two unknowns joined by 4, a gap of 1 between them, load -6 on the end of
 !> the block: lambda = 6, u = -3 and -4, -5.5. The host numbers them 5 and 1, 3.
 program numbering
-  use case_problem, only: require
+  use case_problem, only: require, spring_and_block
   use feti_contact
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
@@ -21,16 +21,9 @@ contains
 
   subroutine begin(p)
     type(feti_problem), intent(out) :: p
-    real(dp) :: held(1, 0)
-    integer :: body
 
-    call feti_problem_create(p)
-    call feti_body_add(p, 1, body)
-    call feti_body_add(p, 2, body)
-    call feti_body_stiffness(p, 1, reshape([2.0_dp], [1, 1]), FETI_FULL)
-    call feti_body_null_space(p, 1, held, FETI_EXACT)
-    call feti_body_stiffness(p, 2, [1, 2, 4], [1, 1, 2], [4.0_dp, -4.0_dp, 4.0_dp], FETI_LOWER)
-    call feti_body_null_space(p, 2, reshape([1.0_dp, 1.0_dp], [2, 1]), FETI_EXACT)
+    call spring_and_block(p, [2.0_dp, 4.0_dp], 0.0_dp, 1.0_dp)
+    call feti_rows_clear(p, FETI_INEQUALITY)
   end subroutine
 
   subroutine numbered

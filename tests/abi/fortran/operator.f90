@@ -147,7 +147,7 @@ end module
 
 program operator
   use case_reader
-  use case_problem, only: data_folder, hand_over, from_basis, require
+  use case_problem, only: data_folder, handed_over, require, spring_and_block
   use feti_contact
   use own_factor
   implicit none
@@ -157,21 +157,6 @@ program operator
   if (command_argument_count() > 0) call membranes
 
 contains
-
-  !> 1000 N/mm at a wall, a block of 4000 N/mm pushed by 100 N across the gap 0.5.
-  subroutine hand_over_springs(p)
-    type(feti_problem), intent(out) :: p
-    real(dp) :: held(1, 0)
-    integer :: body
-
-    call feti_problem_create(p)
-    call feti_body_add(p, 1, body)
-    call feti_body_add(p, 2, body)
-    call feti_body_null_space(p, 1, held, FETI_EXACT)
-    call feti_body_null_space(p, 2, reshape([1.0_dp, 1.0_dp], [2, 1]), FETI_EXACT)
-    call feti_body_load(p, 2, [0.0_dp, -100.0_dp])
-    call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [1, 2], [1, 1], [1.0_dp, -1.0_dp], [0.5_dp])
-  end subroutine
 
   subroutine check_answer(p, after)
     type(feti_problem), intent(in) :: p
@@ -190,7 +175,7 @@ contains
     type(springs), target :: host, other
     real(dp) :: y(1, 1)
 
-    call hand_over_springs(p)
+    call spring_and_block(p, [1000.0_dp, 4000.0_dp], -100.0_dp, 0.5_dp, matrices=.false.)
     call feti_body_operator(p, 1, [1000.0_dp], solve_springs, multiply_springs, data=host)
     call feti_body_operator(p, 2, [4000.0_dp, 4000.0_dp], solve_springs, multiply_springs, .true., host)
     call check_answer(p, 'functions')
@@ -213,7 +198,7 @@ contains
     character(len=300) :: text
     integer :: stat
 
-    call hand_over_springs(p)
+    call spring_and_block(p, [1000.0_dp, 4000.0_dp], -100.0_dp, 0.5_dp, matrices=.false.)
     call feti_body_operator(p, 2, [4000.0_dp, 4000.0_dp], solve_springs, multiply_springs, data=host)
     call feti_body_operator(p, 1, [1000.0_dp], solve_without_data, multiply_springs, stat=stat)
     call feti_solve(p, stat=stat, errmsg=text)
@@ -254,8 +239,7 @@ contains
     integer :: b, i
 
     call read_case(data_folder(), 'p1_P3', case)
-    call feti_problem_create(p)
-    call hand_over(p, case, from_basis)
+    call handed_over(p, case)
     host%problem = p
     allocate (host%body(size(case%body)), lambda(size(case%c)))
     do b = 1, size(case%body)

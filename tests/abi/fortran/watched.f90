@@ -87,7 +87,7 @@ end module
 
 program watched
   use case_reader
-  use case_problem, only: data_folder, hand_over, from_basis, require
+  use case_problem, only: data_folder, handed_over, require, spring_and_block
   use feti_contact
   use watchers
   implicit none
@@ -122,8 +122,7 @@ contains
     type(diary), target :: book
     real(dp) :: wanted(size(wall%c))
 
-    call feti_problem_create(p)
-    call hand_over(p, wall, from_basis)
+    call handed_over(p, wall)
     wanted = forces(p)
     book%problem = p
     call feti_on_progress(p, note, book)
@@ -154,8 +153,7 @@ contains
     real(dp) :: wanted(size(wall%c)), found(size(wall%c)), seconds
     integer :: count, k
 
-    call feti_problem_create(p)
-    call hand_over(p, wall, from_basis)
+    call handed_over(p, wall)
     call feti_set(p, 'dual_operator', 'explicit')
     wanted = forces(p)
     call feti_set(p, 'dual_operator', 'implicit')
@@ -184,8 +182,7 @@ contains
     type(feti_problem) :: p, copy
     type(diary), target :: book
 
-    call feti_problem_create(p)
-    call hand_over(p, wall, from_basis)
+    call handed_over(p, wall)
     copy = p
     call feti_on_progress(copy, note, book)
     call feti_solve(p)
@@ -202,8 +199,7 @@ contains
     type(feti_error_detail) :: detail
     type(diary), target :: book
 
-    call feti_problem_create(p)
-    call hand_over(p, wall, from_basis)
+    call handed_over(p, wall)
     call feti_on_progress(p, note, book)
     call feti_on_progress(p, fail)
     call feti_setup(p, stat, text)
@@ -223,10 +219,8 @@ contains
     type(diary), target :: book
     real(dp) :: outer(size(wall%c)), inner(size(wall%c))
 
-    call feti_problem_create(p)
-    call feti_problem_create(book%problem)
-    call hand_over(p, wall, from_basis)
-    call hand_over(book%problem, wall, from_basis)
+    call handed_over(p, wall)
+    call handed_over(book%problem, wall)
     call feti_on_progress(p, solve_another, book)
     call feti_on_progress(book%problem, solve_another, book)
     outer = forces(p)
@@ -243,8 +237,7 @@ contains
     real(dp), dimension(size(wall%c)) :: before, now
     integer :: id, other
 
-    call feti_problem_create(p)
-    call hand_over(p, wall, from_basis)
+    call handed_over(p, wall)
     before = forces(p)
     call feti_state_save(p, id)
     call feti_state_save(p, other)
@@ -282,20 +275,11 @@ contains
   subroutine diagnosis_counts_from_one
     type(feti_problem) :: p
     type(feti_findings) :: found
-    real(dp) :: held(1, 0), v(2)
+    real(dp) :: v(2)
     real(dp), allocatable :: weight(:)
     integer, allocatable :: row(:)
-    integer :: body
 
-    call feti_problem_create(p)
-    call feti_body_add(p, 1, body)
-    call feti_body_add(p, 2, body)
-    call feti_body_stiffness(p, 1, [1, 2], [1], [1000.0_dp], FETI_LOWER)
-    call feti_body_stiffness(p, 2, [1, 2, 4], [1, 1, 2], [4000.0_dp, -4000.0_dp, 4000.0_dp], FETI_LOWER)
-    call feti_body_null_space(p, 1, held, FETI_EXACT)
-    call feti_body_null_space(p, 2, reshape([1.0_dp, 1.0_dp], [2, 1]), FETI_EXACT)
-    call feti_body_load(p, 2, [0.0_dp, 100.0_dp])
-    call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [1, 2], [1, 1], [1.0_dp, -1.0_dp], [0.5_dp])
+    call spring_and_block(p, [1000.0_dp, 4000.0_dp], 100.0_dp, 0.5_dp)
     call feti_diagnosis(p, found, stat, text)
     call require(stat == FETI_STATE, 'a diagnosis before the first solve')
     call feti_solve(p, stat=stat, errmsg=text)

@@ -5,126 +5,54 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#define SIZE(type, bytes) _Static_assert(sizeof(type) == (bytes), "size of " #type)
-#define OFFSET(type, member, bytes) \
-    _Static_assert(offsetof(type, member) == (bytes), "offset of " #type "." #member)
+/* For every TYPE: its bytes, and the offset of its members. */
+#define SIZE(bytes) _Static_assert(sizeof(TYPE) == (bytes), "size of the struct");
+#define AT(bytes, member) _Static_assert(offsetof(TYPE, member) == (bytes), "offset of " #member);
 
-SIZE(feti_error_detail, 128);
-OFFSET(feti_error_detail, struct_size, 0);
-OFFSET(feti_error_detail, status, 8);
-OFFSET(feti_error_detail, argument, 12);
-OFFSET(feti_error_detail, body, 16);
-OFFSET(feti_error_detail, entry, 48);
-OFFSET(feti_error_detail, value, 56);
-OFFSET(feti_error_detail, limit, 64);
-OFFSET(feti_error_detail, function, 72);
-OFFSET(feti_error_detail, element, 112);
-OFFSET(feti_error_detail, node, 120);
+#define TYPE feti_error_detail
+SIZE(128) AT(0, struct_size) AT(8, status) AT(12, argument) AT(16, body) AT(48, entry) AT(56, value) AT(64, limit)
+AT(72, function) AT(112, element) AT(120, node)
+#undef TYPE
 
-SIZE(feti_option, 72);
-OFFSET(feti_option, struct_size, 0);
-OFFSET(feti_option, type, 8);
-OFFSET(feti_option, minimum, 16);
-OFFSET(feti_option, default_f64, 32);
-OFFSET(feti_option, default_i64, 40);
-OFFSET(feti_option, name, 48);
-OFFSET(feti_option, doc, 56);
-OFFSET(feti_option, default_str, 64);
+#define TYPE feti_option
+SIZE(72) AT(0, struct_size) AT(8, type) AT(16, minimum) AT(32, default_f64) AT(40, default_i64) AT(48, name) AT(56, doc)
+AT(64, default_str)
+#undef TYPE
 
-SIZE(feti_info, 352);
-OFFSET(feti_info, struct_size, 0);
-OFFSET(feti_info, status, 8);
-OFFSET(feti_info, bodies, 16);
-OFFSET(feti_info, undetermined, 64);
-OFFSET(feti_info, steps, 72);
-OFFSET(feti_info, coarse_solves, 112);
-OFFSET(feti_info, factorisations, 120);
-OFFSET(feti_info, analyses, 128);
-OFFSET(feti_info, worst, 136);
-OFFSET(feti_info, equilibrium, 144);
-OFFSET(feti_info, duality_gap, 192);
-OFFSET(feti_info, energy, 200);
-OFFSET(feti_info, seconds_setup, 208);
-OFFSET(feti_info, seconds_solve, 216);
-OFFSET(feti_info, direct_solves, 224);
-OFFSET(feti_info, finished, 232);
-OFFSET(feti_info, columns_computed, 240);
-OFFSET(feti_info, columns_kept, 248);
-OFFSET(feti_info, explicit_operators, 256);
-OFFSET(feti_info, implicit_operators, 264);
-OFFSET(feti_info, factor_bytes, 272);
-OFFSET(feti_info, operator_bytes, 280);
-OFFSET(feti_info, friction_cone, 288);
-OFFSET(feti_info, friction_stick, 304);
-OFFSET(feti_info, nodes, 312);
-OFFSET(feti_info, friction_starts, 344);
+#define TYPE feti_info
+SIZE(352) AT(0, struct_size) AT(8, status) AT(16, bodies) AT(64, undetermined) AT(72, steps) AT(112, coarse_solves)
+AT(120, factorisations) AT(128, analyses) AT(136, worst) AT(144, equilibrium) AT(192, duality_gap) AT(200, energy)
+AT(208, seconds_setup) AT(216, seconds_solve) AT(224, direct_solves) AT(232, finished) AT(240, columns_computed)
+AT(248, columns_kept) AT(256, explicit_operators) AT(264, implicit_operators) AT(272, factor_bytes) AT(280, operator_bytes)
+AT(288, friction_cone) AT(304, friction_stick) AT(312, nodes) AT(344, friction_starts)
+#undef TYPE
 
-SIZE(feti_phase, 32);
-OFFSET(feti_phase, struct_size, 0);
-OFFSET(feti_phase, bytes, 8);
-OFFSET(feti_phase, seconds, 16);
-OFFSET(feti_phase, name, 24);
+#define TYPE feti_phase
+SIZE(32) AT(0, struct_size) AT(8, bytes) AT(16, seconds) AT(24, name)
+#undef TYPE
 
-SIZE(feti_certificate, 184);
-OFFSET(feti_certificate, struct_size, 0);
-OFFSET(feti_certificate, passed, 8);
-OFFSET(feti_certificate, limit, 16);
-OFFSET(feti_certificate, worst, 24);
-OFFSET(feti_certificate, equilibrium, 32);
-OFFSET(feti_certificate, duality_gap, 80);
-OFFSET(feti_certificate, equilibrium_body, 88);
-OFFSET(feti_certificate, complementarity_row, 128);
-OFFSET(feti_certificate, friction_cone, 136);
-OFFSET(feti_certificate, friction_cone_node, 160);
-OFFSET(feti_certificate, friction_stick_node, 176);
+#define TYPE feti_certificate
+SIZE(184) AT(0, struct_size) AT(8, passed) AT(16, limit) AT(24, worst) AT(32, equilibrium) AT(80, duality_gap)
+AT(88, equilibrium_body) AT(128, complementarity_row) AT(136, friction_cone) AT(160, friction_cone_node)
+AT(176, friction_stick_node)
+#undef TYPE
 
-SIZE(feti_progress, 88);
-OFFSET(feti_progress, struct_size, 0);
-OFFSET(feti_progress, phase, 8);
-OFFSET(feti_progress, step, 12);
-OFFSET(feti_progress, steps, 16);
-OFFSET(feti_progress, products, 24);
-OFFSET(feti_progress, active, 32);
-OFFSET(feti_progress, residual, 40);
-OFFSET(feti_progress, theta, 64);
-OFFSET(feti_progress, seconds, 72);
-OFFSET(feti_progress, fraction, 80);
+#define TYPE feti_progress
+SIZE(88) AT(0, struct_size) AT(8, phase) AT(12, step) AT(16, steps) AT(24, products) AT(32, active) AT(40, residual) AT(64, theta)
+AT(72, seconds) AT(80, fraction)
+#undef TYPE
 
-SIZE(feti_findings, 192);
-OFFSET(feti_findings, struct_size, 0);
-OFFSET(feti_findings, status, 8);
-OFFSET(feti_findings, kind, 12);
-OFFSET(feti_findings, body, 16);
-OFFSET(feti_findings, component, 24);
-OFFSET(feti_findings, dof, 32);
-OFFSET(feti_findings, row, 40);
-OFFSET(feti_findings, rows_involved, 48);
-OFFSET(feti_findings, undetermined, 56);
-OFFSET(feti_findings, redundant_rows, 64);
-OFFSET(feti_findings, untouched_bodies, 72);
-OFFSET(feti_findings, untouched_body, 80);
-OFFSET(feti_findings, margin, 88);
-OFFSET(feti_findings, motion, 96);
-OFFSET(feti_findings, unheld, 144);
-OFFSET(feti_findings, doubtful_bodies, 152);
-OFFSET(feti_findings, doubtful_body, 160);
-OFFSET(feti_findings, soft_bodies, 168);
-OFFSET(feti_findings, soft_body, 176);
-OFFSET(feti_findings, capacity, 184);
+#define TYPE feti_findings
+SIZE(192) AT(0, struct_size) AT(8, status) AT(12, kind) AT(16, body) AT(24, component) AT(32, dof) AT(40, row)
+AT(48, rows_involved) AT(56, undetermined) AT(64, redundant_rows) AT(72, untouched_bodies) AT(80, untouched_body) AT(88, margin)
+AT(96, motion) AT(144, unheld) AT(152, doubtful_bodies) AT(160, doubtful_body) AT(168, soft_bodies) AT(176, soft_body)
+AT(184, capacity)
+#undef TYPE
 
-SIZE(feti_body_facts, 160);
-OFFSET(feti_body_facts, struct_size, 0);
-OFFSET(feti_body_facts, unknowns, 8);
-OFFSET(feti_body_facts, borrowed, 40);
-OFFSET(feti_body_facts, null_space, 56);
-OFFSET(feti_body_facts, shared_with, 80);
-OFFSET(feti_body_facts, gap, 104);
-OFFSET(feti_body_facts, force_error, 112);
-OFFSET(feti_body_facts, soft_free, 120);
-OFFSET(feti_body_facts, soft_held, 128);
-OFFSET(feti_body_facts, softness, 136);
-OFFSET(feti_body_facts, softness_of_rounding, 144);
-OFFSET(feti_body_facts, pieces, 152);
+#define TYPE feti_body_facts
+SIZE(160) AT(0, struct_size) AT(8, unknowns) AT(40, borrowed) AT(56, null_space) AT(80, shared_with) AT(104, gap)
+AT(112, force_error) AT(120, soft_free) AT(128, soft_held) AT(136, softness) AT(144, softness_of_rounding) AT(152, pieces)
+#undef TYPE
 
 struct layout {
     const char *type;

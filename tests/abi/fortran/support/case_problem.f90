@@ -4,7 +4,7 @@ module case_problem
   use feti_contact
   implicit none
   private
-  public :: require, largest, data_folder, choose_cases
+  public :: require, largest, data_folder, choose_cases, spring_and_block, handed_over
   public :: hand_over, hand_over_body, hand_over_rows, body_of, displacements, number, stiffness_times
 
   !> Where a body gets its null space from: its basis as the exact one, or the coordinates of its unknowns.
@@ -63,6 +63,38 @@ contains
     do i = 1, size(names)
       call get_command_argument(i + 1, names(i))
     end do
+  end subroutine
+
+  !> A problem by hand: a spring k(1) of one unknown at a wall, held, and a block of two unknowns joined by k(2), floating, behind
+  !> a gap; force: on the far end of the block, towards the spring where negative. Bodies 1 and 2 of a new problem, or with
+  !> `more` the next ones of p; with matrices = .false. without their stiffness.
+  subroutine spring_and_block(p, k, force, gap, more, matrices)
+    type(feti_problem), intent(inout) :: p
+    real(dp), intent(in) :: k(2), force, gap
+    logical, intent(in), optional :: more, matrices
+    real(dp) :: held(1, 0)
+    integer :: spring, block
+
+    if (.not. present(more)) call feti_problem_create(p)
+    call feti_body_add(p, 1, spring)
+    call feti_body_add(p, 2, block)
+    if (.not. present(matrices)) then
+      call feti_body_stiffness(p, spring, [1, 2], [1], k(1:1), FETI_LOWER)
+      call feti_body_stiffness(p, block, [1, 2, 4], [1, 1, 2], k(2) * [1, -1, 1], FETI_LOWER)
+    end if
+    call feti_body_null_space(p, spring, held, FETI_EXACT)
+    call feti_body_null_space(p, block, reshape([1.0_dp, 1.0_dp], [2, 1]), FETI_EXACT)
+    call feti_body_load(p, block, [0.0_dp, force])
+    call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [spring, block], [1, 1], [1.0_dp, -1.0_dp], [gap])
+  end subroutine
+
+  !> A new problem with the whole case, its null spaces given.
+  subroutine handed_over(p, this)
+    type(feti_problem), intent(out) :: p
+    type(contact_case), intent(in) :: this
+
+    call feti_problem_create(p)
+    call hand_over(p, this, from_basis)
   end subroutine
 
   !> Bodies, loads, contact rows and equality rows of a case.
