@@ -73,29 +73,21 @@ impl<'a> Field<'a> {
             motions(body, unit, metric.on(p), is_carried)
         });
         let motions = motions.collect::<Result<_>>()?;
-        let mut grounded = ByBody::filled(ranges, false, WHAT)?;
-        for (p, body) in data.bodies.iter().enumerate().filter(|(_, body)| !body.grounded.is_empty()) {
-            let moving = moving(body)?;
-            let is_carried = |j: u32| touched.place(p, j as usize).is_some_and(|at| carried[at]);
-            let held = body.grounded.iter().filter(|j| !is_carried(**j) && !moving.contains(j));
-            held.for_each(|j| grounded.on_mut(p)[*j as usize] = true);
-        }
+        let grounded = grounded(data, &carried)?;
         let (mut push, mut push_terms) = (vec![0.0; touched.len()], vec![0.0; touched.len()]);
         for kind in RowKind::ALL {
             let (rows, multipliers) = (data.rows(kind), answer.forces(kind));
             rows.matrix.mul_transposed_add(1.0, multipliers, &mut push);
             rows.matrix.mul_transposed_abs_add(multipliers, &mut push_terms);
         }
-        let load = data
-            .bodies
-            .iter()
-            .enumerate()
-            .flat_map(|(p, body)| touched.dofs(p).map(|dof| body.load.map_or(0.0, |load| load[dof])));
+        let load = |(p, body): (usize, &'a BodyData<'a>)| {
+            touched.dofs(p).map(move |dof| body.load.map_or(0.0, |load| load[dof]))
+        };
         let at = AtRows {
             u: touched.at(answer.u),
             metric: touched.at(&metric),
             led,
-            load: load.collect(),
+            load: data.bodies.iter().enumerate().flat_map(load).collect(),
             grounded: touched.at(&grounded),
             carried,
             push,
@@ -176,6 +168,18 @@ fn motions<'a>(
     let basis = basis.orthonormalised(NOISE);
     let motions = Matrix::from_fn(basis.rows, basis.cols, |i, j| basis.get(i, j) / root(i))?;
     Ok((Cow::Owned(motions), unit))
+}
+
+/// Grounded unknowns that are not carried, and that no motion moves.
+fn grounded(data: &Data, carried: &[bool]) -> Result<ByBody<bool>> {
+    let mut grounded = ByBody::filled(data.ranges, false, WHAT)?;
+    for (p, body) in data.bodies.iter().enumerate().filter(|(_, body)| !body.grounded.is_empty()) {
+        let moving = moving(body)?;
+        let is_carried = |j: u32| data.touched.place(p, j as usize).is_some_and(|at| carried[at]);
+        let held = body.grounded.iter().filter(|j| !is_carried(**j) && !moving.contains(j));
+        held.for_each(|j| grounded.on_mut(p)[*j as usize] = true);
+    }
+    Ok(grounded)
 }
 
 /// Grounded unknowns j of a body that its null space moves nevertheless, `|K_jj R_j| > 1/4 sum_k |K_jk||R_k|`: they are

@@ -9,7 +9,7 @@ use crate::certificate::{everywhere, Metric};
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::hash::Shared;
+use crate::linalg::hash::{hash, Shared, START};
 use crate::linalg::ByBody;
 use crate::model::{Lengths, Method, Preconditioning, Settings, SolvedModel};
 use crate::numbers::setup::{ASSEMBLED, ASSEMBLED_LUMPED};
@@ -56,7 +56,7 @@ impl Prepared {
         self.release();
         let islands = islands(model)?;
         let mut with_rows = reserved(islands.len(), "groups of bodies")?;
-        let mut known = Shared::default();
+        let (mut known, mut metrics) = (Shared::default(), Shared::default());
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
         let mut pilots = vec![None; model.bodies.len()];
         for mut island in islands {
@@ -80,8 +80,10 @@ impl Prepared {
             let tangential = own.first_tangential();
             let counts = Dual::distinct_rows(&orders, &island.touched, &own.matrix, tangential);
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
-            let (own, metric) = (known.share(own.key(), own, DualRows::eq), Arc::new(metric));
-            with_rows.push(WithRows { island: Box::new(island), rows: own, metric, compliance });
+            let rows = known.share(own.key(), own, DualRows::eq);
+            let key = hash(START, metric.in_sequence().iter().map(|d| d.to_bits()));
+            let metric = metrics.share(key, metric, ByBody::eq);
+            with_rows.push(WithRows { island: Box::new(island), rows, metric, compliance });
         }
         self.carry(pilots);
         watch.phases.ended(Phase::Rows, begun);

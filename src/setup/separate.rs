@@ -146,8 +146,8 @@ fn nodes(model: &SolvedModel, acting: &[usize], islands: &mut [Island], island_o
     }
 }
 
-/// These rows over the unknowns that rows of an island touch, which shares their entries with the host's rows if it has all of them, otherwise, as
-/// their compliances, with other islands that have equal ones.
+/// These rows over the unknowns that rows of an island touch. The island shares their entries with the host's rows if it has all of
+/// them, otherwise, as their compliances, with other islands that have equal ones.
 fn restricted(
     rows: &RowSet,
     numbers: &[usize],
