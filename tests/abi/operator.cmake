@@ -1,6 +1,6 @@
 # ---- bodies whose stiffness the host keeps
 c_drivers(operator)
-target_link_libraries(c_operator PRIVATE cholmod_shim)
+target_sources(c_operator PRIVATE c/skyline.c)
 fortran_drivers(operator)
 
 claim_silent("C: a host with its own factorisation gets the answer of matrices, on its thread or on any, in its environment, and may cancel, fail and ask from inside"

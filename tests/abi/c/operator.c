@@ -1,4 +1,4 @@
-/* A host with a factorisation of its own, by CHOLMOD: the answer is that of the matrices, its functions run on its thread alone or on
+/* A host with a factorisation of its own: the answer is that of the matrices, its functions run on its thread alone or on
    any, in its floating-point environment; from inside it cancels and finds the problem busy; what fails is named.
    operator <data folder> [case ...] */
 #define _POSIX_C_SOURCE 200112L
@@ -6,8 +6,7 @@
 #include <pthread.h>
 #include <xmmintrin.h>
 
-#include "cholmod_shim.h"
-#include "handover.h"
+#include "skyline.h"
 #include "small.h"
 
 static const form LOWER = { .storage = FETI_LOWER };
@@ -16,7 +15,7 @@ static const form LOWER = { .storage = FETI_LOWER };
 typedef struct {
     feti_problem *problem;
     const case_data *data;
-    shim_factor *factor[CASE_BODIES_MAX];
+    skyline factor[CASE_BODIES_MAX];
     pthread_t caller;
     pthread_mutex_t lock;
     unsigned rounding;
@@ -60,9 +59,10 @@ static int32_t kplus(void *user, int64_t body, int64_t n, int64_t nrhs, const do
     own_host *host = user;
 
     CHECK(n == host->data->body[body].n && nrhs >= 1 && nrhs <= 32 && ldx >= n && ldy >= n, "body %d, nrhs %d", (int)body, (int)nrhs);
-    pthread_mutex_lock(&host->lock); /* CHOLMOD has its workspace in the factor */
-    for (int64_t j = 0; j < nrhs; j++) CHECK(shim_solve(host->factor[body], x + j * ldx, y + j * ldy) == 0, "CHOLMOD fails");
-    pthread_mutex_unlock(&host->lock);
+    for (int64_t j = 0; j < nrhs; j++) {
+        memcpy(y + j * ldy, x + j * ldx, (size_t)n * sizeof *y);
+        skyline_solve(&host->factor[body], y + j * ldy);
+    }
     return enter(host, nrhs);
 }
 
@@ -95,30 +95,20 @@ static void give(own_host *host, int64_t b, int32_t concurrent)
     free(diag); /* copied */
 }
 
-/* Held in K+ are the unknowns that the library would hold. */
 static own_host *host_of(const case_data *data)
 {
     own_host *host = check_array(1, sizeof *host);
-    feti_problem *by_matrix = handed_over(data, &LOWER);
 
     *host = (own_host){ .problem = handed_over(data, &LOWER), .data = data, .caller = pthread_self() };
     pthread_mutex_init(&host->lock, NULL);
-    for (int64_t b = 0; b < data->bodies; b++) {
-        const case_body *body = &data->body[b];
-        const case_matrix *m = &body->stiffness;
-        int64_t held[6] = { 0 };
-        OK(feti_body_fixing(by_matrix, b, body->null_columns, held));
-        host->factor[b] = shim_factorise(body->n, m->row_ptr, m->col, m->val, body->null_columns, held, 0);
-        if (!host->factor[b]) exit(1);
-    }
-    OK(feti_problem_destroy(&by_matrix));
+    for (int64_t b = 0; b < data->bodies; b++) host->factor[b] = skyline_of(&data->body[b]);
     return host;
 }
 
 static void host_free(own_host *host)
 {
     OK(feti_problem_destroy(&host->problem));
-    for (int64_t b = 0; b < host->data->bodies; b++) shim_release(host->factor[b]);
+    for (int64_t b = 0; b < host->data->bodies; b++) skyline_free(&host->factor[b]);
     pthread_mutex_destroy(&host->lock);
     free(host);
 }
