@@ -63,13 +63,13 @@ pub fn everywhere(
     (ranges, touched): (&Ranges, &Touched),
     values: &[f64],
     unit: f64,
-) -> ByBody {
+) -> Result<ByBody> {
     let own = bodies
         .iter()
         .map(|(k, without)| -> Vec<f64> { (0..k.order()).map(|i| k.metric(i, *without) / unit).collect() });
-    let mut all = ByBody::from_each(ranges, own);
+    let mut all = ByBody::from_each(ranges, own, WHAT)?;
     touched.set(values, &mut all);
-    all
+    Ok(all)
 }
 
 /// The largest D of a body; `without`: that of unknowns without stiffness.

@@ -65,7 +65,7 @@ impl<'a> Field<'a> {
         let Metric { values: metric, carried: places } = search.metric()?;
         let mut carried = vec![false; touched.len()];
         places.into_iter().for_each(|j| carried[j] = true);
-        let metric = everywhere(&metered, (ranges, touched), &metric, unit);
+        let metric = everywhere(&metered, (ranges, touched), &metric, unit)?;
         let mut all_led = metric.clone();
         touched.set(&led, &mut all_led);
         let motions = data.bodies.iter().enumerate().map(|(p, body)| {

@@ -59,8 +59,11 @@ impl Forces {
             let mut strain = field.free(p, |j| positive(own[j] - NOISE * u[j].abs()));
             let all = field.unit * weighted_norm(&strain, |j| metric[j]);
             let touched = field.data.touched;
-            let carried = touched.range(p).zip(touched.dofs(p)).filter(|(j, _)| field.at.carried[*j]);
-            carried.for_each(|(_, dof)| strain[dof] = 0.0);
+            let carried: Vec<usize> = touched.range(p).filter(|j| field.at.carried[*j]).collect();
+            if carried.is_empty() {
+                return (all, all);
+            }
+            carried.into_iter().for_each(|j| strain[touched.dof(j)] = 0.0);
             (all, field.unit * weighted_norm(&strain, |j| metric[j]))
         });
         let (strains, of_bodies): (Vec<f64>, Vec<f64>) = strains.unzip();

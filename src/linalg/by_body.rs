@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::vector::axpy;
-use crate::platform::memory::{copied, filled};
+use crate::platform::memory::{copied, filled, reserved};
 
 /// Where each body begins and ends among all unknowns.
 pub type Ranges = Arc<Vec<Range<usize>>>;
@@ -30,10 +30,14 @@ impl<T: Copy> ByBody<T> {
     }
 
     /// Of each body its own.
-    pub fn from_each<O: AsRef<[T]>>(ranges: &Ranges, own: impl IntoIterator<Item = O>) -> Self {
-        let mut values = Vec::with_capacity(ranges.last().map_or(0, |range| range.end));
+    pub fn from_each<O: AsRef<[T]>>(
+        ranges: &Ranges,
+        own: impl IntoIterator<Item = O>,
+        what: &str,
+    ) -> Result<Self> {
+        let mut values = reserved(ranges.last().map_or(0, |range| range.end), what)?;
         own.into_iter().for_each(|own| values.extend_from_slice(own.as_ref()));
-        Self::of(ranges, values)
+        Ok(Self::of(ranges, values))
     }
 
     /// The values of body p.

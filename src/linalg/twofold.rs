@@ -88,8 +88,7 @@ impl TwofoldByBody {
 
 impl From<ByBody> for TwofoldByBody {
     fn from(v: ByBody) -> Self {
-        let mut rest = v.clone();
-        rest.change(|rest| *rest = 0.0);
+        let rest = v.map(|_| 0.0);
         Self { parts: [v, rest] }
     }
 }

@@ -207,7 +207,7 @@ fn metric(model: &SolvedModel, island: &Island) -> Result<(Metric, ByBody)> {
     let bodies: Vec<_> = island.bodies.iter().filter_map(of_body).collect();
     let rows = RowKind::ALL.map(|kind| &island.members(kind).rows);
     let at_rows = Metric::of(&bodies, &island.touched, rows, &|_, _| true, island.unit)?;
-    let all = everywhere(&bodies, (&island.ranges, &island.touched), &at_rows.values, island.unit);
+    let all = everywhere(&bodies, (&island.ranges, &island.touched), &at_rows.values, island.unit)?;
     Ok((at_rows, all))
 }
 

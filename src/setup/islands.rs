@@ -9,7 +9,6 @@ use crate::error::Result;
 use crate::linalg::by_body::Ranges;
 use crate::linalg::ByBody;
 use crate::model::{Lengths, SolvedModel};
-use crate::platform::memory::reserved;
 
 const WHAT: &str = "groups of bodies";
 
@@ -113,9 +112,7 @@ impl Island {
 
     /// Copies the values of the island from values over all unknowns.
     pub fn gather(&self, model: &SolvedModel, all: &[f64]) -> Result<ByBody> {
-        let mut own = reserved(self.unknowns(), WHAT)?;
-        self.bodies.iter().for_each(|&p| own.extend_from_slice(&all[model.range(p)]));
-        Ok(ByBody::of(&self.ranges, own))
+        ByBody::from_each(&self.ranges, self.bodies.iter().map(|&p| &all[model.range(p)]), WHAT)
     }
 
     /// Copies values over the unknowns of the island to values over all unknowns.

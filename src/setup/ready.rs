@@ -7,7 +7,6 @@ use crate::error::Result;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::ByBody;
 use crate::model::Preconditioning;
-use crate::platform::memory::reserved;
 use crate::platform::threads;
 use crate::qp::friction::PairsBetween;
 use crate::qp::BetweenSolves;
@@ -76,15 +75,12 @@ impl Ready {
         let on_caller = |p: usize| self.dual.solves_on_caller(p);
         let displacement = |p| self.dual.displacement(p, f.on(p));
         let bodies = threads::run_apart(threads, self.dual.bodies(), on_caller, displacement)?;
-        let mut all = reserved(self.island.unknowns(), "a displacement")?;
-        bodies.iter().for_each(|u| all.extend_from_slice(u));
-        Ok(ByBody::of(&self.island.ranges, all))
+        ByBody::from_each(&self.island.ranges, bodies, "a displacement")
     }
 
-    /// `|f|_{D^-1}` of body p, in units of 2^p.
-    pub fn force(&self, p: usize, f: &[f64]) -> f64 {
-        let metric = self.metric.on(p);
-        weighted_norm(f, |j| 1.0 / metric[j])
+    /// `|f|_{D^-1}` of every body, in units of 2^p.
+    pub fn forces(&self, f: &ByBody) -> Vec<f64> {
+        f.each().zip(self.metric.each()).map(|(f, metric)| weighted_norm(f, |j| 1.0 / metric[j])).collect()
     }
 
     /// `|u|_D` of body p.
@@ -101,8 +97,7 @@ impl Ready {
 
     /// `|f|_{D^-1}`
     pub fn force_of_all(&self, f: &ByBody) -> f64 {
-        let own: Vec<f64> = f.each().enumerate().map(|(p, f)| self.force(p, f)).collect();
-        weighted_norm(&own, |_| 1.0)
+        weighted_norm(&self.forces(f), |_| 1.0)
     }
 
     /// `R a`

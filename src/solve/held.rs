@@ -5,6 +5,7 @@ use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::random::scattered;
+use crate::linalg::vector::weighted_norm;
 use crate::linalg::{ByBody, Csr, Matrix, Operator};
 use crate::numbers::rounding;
 use crate::numbers::solve::SMALL_FORCE;
@@ -23,15 +24,14 @@ pub fn without_force(ready: &Ready, coarse: &Csr, load: &ByBody, forces: [&[f64]
         let kinds = RowKind::ALL.into_iter().zip(forces);
         kinds.for_each(|(kind, f)| island.members(kind).rows.matrix.mul_transposed_add(1.0, f, push));
     });
-    let of_body = |p: usize| [ready.force(p, load.on(p)), ready.force(p, push.on(p))];
-    let sizes: Vec<[f64; 2]> = (0..island.bodies.len()).map(of_body).collect();
-    let everywhere = ready.force_of_all(load).hypot(ready.force_of_all(&push));
+    let [loads, pushes] = [load, &push].map(|f| ready.forces(f));
+    let everywhere = weighted_norm(&loads, |_| 1.0).hypot(weighted_norm(&pushes, |_| 1.0));
     let of_bodies = |part: f64, idle: f64| -> Vec<f64> {
-        let nothing = |[own, push]: &[f64; 2]| {
+        let nothing = |(own, push): (&f64, &f64)| {
             let idle = if *own == 0.0 { idle * everywhere } else { 0.0 };
             (part * (own + push)).max(idle)
         };
-        sizes.iter().map(nothing).collect()
+        loads.iter().zip(&pushes).map(nothing).collect()
     };
     let mut held: Vec<bool> = (0..rows.groups()).map(|group| rows.kind(group) != RowKind::Equality).collect();
     let mut small = held.clone();

@@ -284,7 +284,7 @@ fn hard_problems_that_once_stalled_end_as_they_may() {
 #[test]
 #[ignore]
 fn one_hard_problem_in_full() {
-    let seed = std::env::var("HARD").ok().and_then(|text| text.parse().ok()).unwrap_or(0);
+    let seed = asked::asked("HARD").unwrap_or(0);
     let case = hard::mixed(seed, mixture());
     println!("{case:#?}");
     let mut problem = problem(&case.deck, case.given).unwrap();

@@ -158,7 +158,7 @@ fn every_varied_problem_that_is_solved_is_solved_rightly() {
 #[test]
 #[ignore]
 fn one_varied_problem_in_full() {
-    let seed = std::env::var("VARIED").ok().and_then(|text| text.parse().ok()).unwrap_or(0);
+    let seed = asked::asked("VARIED").unwrap_or(0);
     let case = varied::mixed(seed, mixture());
     println!("{case:#?}");
     let mut problem = hand_over::problem(&case.deck).unwrap();

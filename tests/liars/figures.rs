@@ -9,7 +9,7 @@ use decks::yardstick::{reaction, Answer, Yardstick};
 use feti_contact::certificate::Certificate;
 use feti_contact::solver::RowKind;
 
-use crate::liars::{lies, number, right, CONDITION, PROBLEMS};
+use crate::liars::{lies, problems, right, CONDITION};
 use crate::support::hand_over;
 
 /// `worst` of many answers.
@@ -48,7 +48,7 @@ const ENTRIES: [&str; 10] = [
 #[test]
 #[ignore = "prints figures, judges nothing"]
 fn worst_of_right_answers_and_of_lies() {
-    let (first, count) = (number("LIARS_SEED", 0), number("LIARS", PROBLEMS));
+    let (first, count) = problems();
     let mut found: BTreeMap<String, Spread> = BTreeMap::new();
     let mut judged = 0;
     for (seed, case) in (first..first + count).map(|seed| (seed, varied::case(seed))) {
@@ -90,7 +90,7 @@ fn worst_of_right_answers_and_of_lies() {
 #[ignore = "prints figures, judges nothing"]
 fn errors_of_forces_that_pass() {
     const LOOSE: f64 = 1e-4;
-    let (first, count) = (number("LIARS_SEED", 0), number("LIARS", PROBLEMS));
+    let (first, count) = problems();
     let mut found: BTreeMap<String, Spread> = BTreeMap::new();
     for case in (first..first + count).map(varied::case).filter(|case| case.condition <= CONDITION) {
         let mut problem = hand_over::problem(&case.deck).unwrap();

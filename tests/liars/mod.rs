@@ -5,6 +5,7 @@ mod figures;
 mod lies;
 mod limits;
 
+use crate::support::asked::asked;
 use crate::support::hand_over;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -26,8 +27,9 @@ const CONDITION: f64 = 1e8;
 /// Lines of a table of failures.
 const LINES: usize = 60;
 
-fn number(name: &str, otherwise: u64) -> u64 {
-    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(otherwise)
+/// The first seed of a run, and how many problems.
+fn problems() -> (u64, u64) {
+    (asked("LIARS_SEED").unwrap_or(0), asked("LIARS").unwrap_or(PROBLEMS))
 }
 
 /// What became of all answers.
@@ -66,7 +68,7 @@ impl Tally {
 
 /// Judges every case on two threads; the cases beyond the condition are counted only.
 fn of_all_cases(judge: impl Fn(&mut Tally, u64, &Varied, &mut Problem) + Sync) -> Tally {
-    let (first, count) = (number("LIARS_SEED", 0), number("LIARS", PROBLEMS));
+    let (first, count) = problems();
     let tally = Mutex::new(Tally::default());
     std::thread::scope(|scope| {
         for part in 0..2 {

@@ -78,9 +78,6 @@ impl Unheld {
     /// For the forces x of the dual, which leave `rest` = e - G x.
     fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
         let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, &ready.metric);
-        let sizes = |load: &ByBody| -> Vec<f64> {
-            load.each().enumerate().map(|(p, load)| ready.force(p, load)).collect()
-        };
         let load = as_load(rest);
         let sizes_of_modes = ready.dual.sizes_of_modes();
         let amplitudes = rest.iter().zip(sizes_of_modes).map(|(e, size)| size * size * e).collect();
@@ -90,8 +87,8 @@ impl Unheld {
         }
         let load = data.without_grounded(load);
         let resultants = data.without_grounded(as_load(&scaled.resultants));
-        let (left, resultants) = (sizes(&load), sizes(&resultants));
-        let loads = sizes(&data.without_grounded(scaled.load.clone()));
+        let (left, resultants) = (ready.forces(&load), ready.forces(&resultants));
+        let loads = ready.forces(&data.without_grounded(scaled.load.clone()));
         let (cluster, count) = clusters(ready, &x, &left);
         let of_cluster = |k: usize, sizes: &[f64]| {
             let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
