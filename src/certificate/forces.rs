@@ -23,6 +23,8 @@ pub(super) struct Forces {
     led: Vec<f64>,
     /// Bodies without load, except on grounded unknowns; a load below 64 eps of the forces of the island is none.
     unloaded: Vec<bool>,
+    /// The load of every body if it is rounding of the load of the host's body, force; otherwise 0.
+    noise: Vec<f64>,
     /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. If there is no such load, the
     /// forces for the prescribed motion (`asked`) are added.
     everywhere: f64,
@@ -71,11 +73,15 @@ impl Forces {
         let leverage = sizes.iter().zip(&strains).map(of_body).fold(of_grounded(field), f64::max);
         let strain = weighted_norm(&of_bodies, |_| 1.0);
         let unloaded = loads.iter().map(|load| *load <= NOISE * forces).collect();
+        let of_whole = field.data.bodies.iter().map(|body| body.load_of_whole * field.unit.sqrt());
+        let noise = loads.iter().zip(of_whole);
+        let noise = noise.map(|(load, whole)| if *load <= NOISE * whole { *load } else { 0.0 }).collect();
         Self {
             sizes,
             terms,
             led,
             unloaded,
+            noise,
             everywhere: forces + moved,
             strains,
             strain,
@@ -84,14 +90,14 @@ impl Forces {
         }
     }
 
-    /// `part` of the forces of the island, force, if body p has neither a load nor larger forces; otherwise 0. Without a load forces
-    /// below the accuracy of the data are zero: answers of other solvers carry 1e-13.
+    /// `part` of the forces of the island, force, if body p has neither a load nor larger forces; otherwise its load if that is
+    /// rounding. Without a load forces below the accuracy of the data are zero: answers of other solvers carry 1e-13.
     fn idle(&self, p: usize, size: f64, part: f64) -> f64 {
         let most = part * self.everywhere;
         if self.unloaded[p] && size <= most {
             most
         } else {
-            0.0
+            self.noise[p]
         }
     }
 

@@ -116,6 +116,8 @@ pub struct BodyData<'a> {
     pub stiffness: Stiffness<'a>,
     /// f_p, n_p, force; zero if absent.
     pub load: Option<&'a [f64]>,
+    /// `(f'D^-1 f)^1/2` of the body of the host of which this is a part, (force x length)^1/2: a load below 64 eps of it is rounding.
+    pub load_of_whole: f64,
     /// R_p, n_p x r, no unit, with `R'DR = unit`.
     pub null_space: &'a Matrix,
     /// K has positive or negative stiffness along motions of R, which are exact: `(K R)'u` is part of their balance.

@@ -10,6 +10,7 @@ use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, Shared, START};
+use crate::linalg::vector::weighted_norm;
 use crate::linalg::ByBody;
 use crate::model::{Lengths, Method, Preconditioning, Settings, SolvedModel};
 use crate::numbers::setup::{ASSEMBLED, ASSEMBLED_LUMPED};
@@ -50,7 +51,7 @@ impl Prepared {
         let lengths = model.lengths()?;
         lengths.check_empty_rows()?;
         if self.is_up_to_date(model) {
-            self.refresh_gaps(&lengths);
+            self.refresh(&lengths);
             return Ok(());
         }
         self.release();
@@ -110,8 +111,12 @@ impl Prepared {
         })
     }
 
-    /// Updates the gaps of the islands.
-    pub fn refresh_gaps(&mut self, lengths: &Lengths) {
+    /// Updates what depends on gaps and loads.
+    pub fn refresh(&mut self, lengths: &Lengths) {
+        let loads = self.loads_of_hosts(lengths.model());
+        if let Some(duals) = &mut self.duals {
+            duals.loads = loads;
+        }
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
         for ready in islands {
             ready.island.refresh(lengths);
@@ -122,6 +127,24 @@ impl Prepared {
             own.rhs.clone_from(&level.rhs);
             own.taken.clone_from(&level.taken);
         }
+    }
+
+    /// `Duals::loads`
+    fn loads_of_hosts(&self, model: &SolvedModel) -> Vec<f64> {
+        let Some(parts) = &model.parts else { return Vec::new() };
+        let of_part = |p: usize| {
+            let (body, inverse) = (&model.bodies[p].body, self.inverse(model, p));
+            let (Some(k), Some(inverse)) = (body.k(), inverse) else { return 0.0 };
+            let load = body.load.iter().flatten().enumerate().filter(|(_, f)| **f != 0.0);
+            let acts = load.filter(|(i, _)| inverse.grounded.binary_search(&(*i as u32)).is_err());
+            let own: Vec<f64> = acts.map(|(i, f)| f / k.metric(i, inverse.unit).sqrt()).collect();
+            weighted_norm(&own, |_| 1.0)
+        };
+        let of_host = |body: usize| match parts.only(body) {
+            Some(_) => 0.0,
+            None => weighted_norm(&parts.of(body).map(of_part).collect::<Vec<_>>(), |_| 1.0),
+        };
+        (0..parts.offsets.len() - 1).map(of_host).collect()
     }
 
     /// Forms F and G of every island.
@@ -182,7 +205,8 @@ impl Prepared {
                 pairs,
             });
         }
-        Ok(Duals { of: model.revisions, islands: ready, operators, island_of })
+        let loads = self.loads_of_hosts(model);
+        Ok(Duals { of: model.revisions, islands: ready, operators, island_of, loads })
     }
 }
 

@@ -7,7 +7,7 @@ use crate::body::{GeneralizedInverse, Pilots, Symbolic};
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
-use crate::model::{BodyRevisions, Revisions, SolvedModel};
+use crate::model::{BodyRevisions, Parts, Revisions, SolvedModel};
 use crate::progress::{Phase, PhaseReport, Phases};
 use crate::setup::operators::Operators;
 use crate::setup::ready::Ready;
@@ -56,6 +56,9 @@ pub struct Duals {
     pub operators: Operators,
     /// Island of every body.
     pub island_of: Vec<usize>,
+    /// `(f'D^-1 f)^1/2` of every body of the host that has several parts, without grounded unknowns, (force x length)^1/2; empty if none
+    /// has.
+    pub loads: Vec<f64>,
 }
 
 /// Work of all setups since the problem was created: differences show the cost of a change of the data.
@@ -96,6 +99,12 @@ impl Prepared {
     /// As `duals`, after a setup.
     pub fn done(&self, model: &SolvedModel) -> Result<&Duals> {
         self.duals(model).ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))
+    }
+
+    /// `loads` of the host's body to which a body belongs, 0 if that is the body.
+    pub fn load_of_whole(&self, model: &SolvedModel, body: usize) -> f64 {
+        let of = |parts: &Arc<Parts>| Some(self.duals.as_ref()?.loads[parts.parts[body].body]);
+        model.parts.as_ref().and_then(of).unwrap_or(0.0)
     }
 
     /// K+ of the present body, if made.

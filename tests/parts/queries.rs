@@ -124,6 +124,37 @@ fn a_light_part_is_judged_as_alone() {
     assert!(problem.check(&u, &lie, &mu).unwrap().worst() > 1.0);
 }
 
+/// One K of a held chain under a load of 3, and of two unknowns, a spring between them, that nothing holds.
+#[test]
+fn a_load_on_a_part_is_nothing_if_it_is_rounding_of_that_of_the_whole_matrix() {
+    let (ptr, col) = ([0, 1, 3, 4, 6], [0, 0, 1, 2, 2, 3]);
+    let val = [2.0, -1.0, 1.0, 1.0, -1.0, 1.0];
+    let solved = |unit: f64, load: f64| {
+        let mut problem = Problem::new();
+        problem.add_body(4).unwrap();
+        let val = val.map(|v| unit * v);
+        let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+        problem.set_stiffness(0, input).unwrap();
+        problem.set_load(0, &[0.0, 3.0 * unit, load * unit, 0.0]).unwrap();
+        let ended = problem.solve().map(|report| report.outcome).map_err(|error| error.kind);
+        (problem, ended)
+    };
+    for unit in [1e-30, 1.0, 1e30] {
+        for noise in [1e-40, -1e-20, 2e-15] {
+            let (mut problem, ended) = solved(unit, noise);
+            assert_eq!(ended, Ok(Outcome::Solved), "{noise:e}");
+            let mut u = problem.displacements().unwrap().to_vec();
+            assert!((u[0] - 3.0).abs() + (u[1] - 6.0).abs() < 1e-13, "{u:?}");
+            assert!(problem.check(&u, &[], &[]).unwrap().worst() <= 1.0, "{noise:e}");
+            u[3] += 1e-9;
+            assert!(problem.check(&u, &[], &[]).unwrap().worst() > 1.0, "{noise:e}: strained");
+        }
+        for load in [1e-12, 1e-6, 1.0] {
+            assert_eq!(solved(unit, load).1, Err(Kind::LoadNotHeld), "{load:e}");
+        }
+    }
+}
+
 /// A chain given by elements and cut, and two springs in one matrix or as two bodies, joined by rows.
 #[test]
 fn parts_beside_a_body_that_is_cut_are_judged_as_separate_bodies() {

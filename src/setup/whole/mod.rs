@@ -172,6 +172,7 @@ impl Whole {
             bodies.push(BodyData {
                 stiffness,
                 load: Some(load),
+                load_of_whole: 0.0,
                 null_space: own.null_space.vectors(),
                 soft: own.soft,
                 unit: if largest > 0.0 { power_of_two_below(largest) } else { self.island.unit },

@@ -5,7 +5,7 @@ use crate::constraints::{FrictionNode, RowKind};
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::graph::joined;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{norm_max, ratio, weighted_norm};
+use crate::linalg::vector::{norm_max, ratio, weighted_norm, NOISE};
 use crate::linalg::ByBody;
 use crate::model::Accuracy;
 use crate::numbers::solve::{BEYOND, LOAD_RANGE};
@@ -19,7 +19,7 @@ use crate::solve::scaled::Scaled;
 
 /// The part of a load that the nearest forces of the rows do not hold. Bodies with such a part that are joined by
 /// equality rows or by rows with a force move together: a cluster. Shares are relative to the cluster's load, |f|_{D^-1}
-/// without grounded unknowns.
+/// without grounded unknowns; to that of the host's body if the load of a part of it is rounding of that.
 pub struct Unheld {
     /// D R c, in units of 2^p: the part not held, as a load.
     pub load: ByBody,
@@ -94,8 +94,11 @@ impl Unheld {
             let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
             weighted_norm(&own.collect::<Vec<_>>(), |_| 1.0)
         };
+        let whole = data.bodies.iter().map(|body| body.load_of_whole / ready.island.unit.sqrt());
+        let told = loads.iter().zip(whole).map(|(own, whole)| if *own <= NOISE * whole { whole } else { *own });
+        let told: Vec<f64> = told.collect();
         let of_clusters: Vec<f64> =
-            (0..count).map(|k| ratio(of_cluster(k, &left), of_cluster(k, &loads))).collect();
+            (0..count).map(|k| ratio(of_cluster(k, &left), of_cluster(k, &told))).collect();
         let share_of = |p: usize| if left[p] > 0.0 { of_clusters[cluster[p]] } else { 0.0 };
         let shares: Vec<f64> = (0..left.len()).map(share_of).collect();
         let worse = |best: usize, p: usize| {
