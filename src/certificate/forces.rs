@@ -73,9 +73,10 @@ impl Forces {
         let leverage = sizes.iter().zip(&strains).map(of_body).fold(of_grounded(field), f64::max);
         let strain = weighted_norm(&of_bodies, |_| 1.0);
         let unloaded = loads.iter().map(|load| *load <= NOISE * forces).collect();
-        let of_whole = field.data.bodies.iter().map(|body| body.load_of_whole * field.unit.sqrt());
-        let noise = loads.iter().zip(of_whole);
-        let noise = noise.map(|(load, whole)| if *load <= NOISE * whole { *load } else { 0.0 }).collect();
+        let noise = loads.iter().zip(&field.data.bodies);
+        let noise =
+            noise.map(|(load, body)| if body.is_noise(load / field.unit.sqrt()) { *load } else { 0.0 });
+        let noise = noise.collect();
         Self {
             sizes,
             terms,

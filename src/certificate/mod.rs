@@ -116,8 +116,8 @@ pub struct BodyData<'a> {
     pub stiffness: Stiffness<'a>,
     /// f_p, n_p, force; zero if absent.
     pub load: Option<&'a [f64]>,
-    /// `(f'D^-1 f)^1/2` of the body of the host of which this is a part, (force x length)^1/2: a load below 64 eps of it is rounding.
-    pub load_of_whole: f64,
+    /// The load of the body of the host of which this is a part; 0 if this is the body.
+    pub whole: LoadOfWhole,
     /// R_p, n_p x r, no unit, with `R'DR = unit`.
     pub null_space: &'a Matrix,
     /// K has positive or negative stiffness along motions of R, which are exact: `(K R)'u` is part of their balance.
@@ -126,6 +126,31 @@ pub struct BodyData<'a> {
     pub unit: f64,
     /// Unknowns of the body held so stiffly that neighbours are negligible, ascending: see `grounded`.
     pub grounded: &'a [u32],
+}
+
+/// The load of a body of the host that has several parts, without grounded unknowns.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LoadOfWhole {
+    /// `(f'D~^-1 f)^1/2`, (force x length)^1/2.
+    pub size: f64,
+    /// The largest entry, force.
+    pub largest: f64,
+}
+
+impl BodyData<'_> {
+    /// Its load, with this `(f'D~^-1 f)^1/2`, is rounding of the load of the whole: a soft part, or one with a large load, makes it
+    /// none alone.
+    pub fn is_noise(&self, size: f64) -> bool {
+        size <= NOISE * self.whole.size
+            && largest_load(self.load, self.grounded) <= NOISE * self.whole.largest
+    }
+}
+
+/// The largest entry of a load without grounded unknowns.
+pub fn largest_load(load: Option<&[f64]>, grounded: &[u32]) -> f64 {
+    let entries = load.unwrap_or_default().iter().enumerate();
+    let acts = entries.filter(|(i, _)| grounded.binary_search(&(*i as u32)).is_err());
+    acts.fold(0.0, |most, (_, f)| most.max(f.abs()))
 }
 
 /// An answer on the bodies, contact rows, equality rows of the island.

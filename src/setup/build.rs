@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::body::Pilots;
-use crate::certificate::{everywhere, Metric};
+use crate::certificate::{everywhere, largest_load, LoadOfWhole, Metric};
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
@@ -113,8 +113,8 @@ impl Prepared {
 
     /// Updates what depends on gaps and loads.
     pub fn refresh(&mut self, lengths: &Lengths) {
-        let loads = self.loads_of_hosts(lengths.model());
-        if let Some(duals) = &mut self.duals {
+        let loads = self.duals.as_ref().map(|duals| self.loads_of_hosts(lengths.model(), &duals.islands));
+        if let (Some(duals), Some(loads)) = (&mut self.duals, loads) {
             duals.loads = loads;
         }
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
@@ -130,19 +130,29 @@ impl Prepared {
     }
 
     /// `Duals::loads`
-    fn loads_of_hosts(&self, model: &SolvedModel) -> Vec<f64> {
+    fn loads_of_hosts(&self, model: &SolvedModel, islands: &[Ready]) -> Vec<LoadOfWhole> {
         let Some(parts) = &model.parts else { return Vec::new() };
-        let of_part = |p: usize| {
-            let (body, inverse) = (&model.bodies[p].body, self.inverse(model, p));
-            let (Some(k), Some(inverse)) = (body.k(), inverse) else { return 0.0 };
-            let load = body.load.iter().flatten().enumerate().filter(|(_, f)| **f != 0.0);
-            let acts = load.filter(|(i, _)| inverse.grounded.binary_search(&(*i as u32)).is_err());
-            let own: Vec<f64> = acts.map(|(i, f)| f / k.metric(i, inverse.unit).sqrt()).collect();
-            weighted_norm(&own, |_| 1.0)
-        };
+        let mut of_parts = vec![LoadOfWhole::default(); model.bodies.len()];
+        for ready in islands {
+            for (&p, metric) in ready.island.bodies.iter().zip(ready.metric.each()) {
+                let grounded = self.inverse(model, p).map_or(&[][..], |inverse| &inverse.grounded);
+                let load = model.bodies[p].body.load.as_deref();
+                let held = |i: usize| grounded.binary_search(&(i as u32)).is_ok();
+                let entries = load.unwrap_or_default().iter().zip(metric).enumerate();
+                let acts = entries.filter(|(i, (f, _))| **f != 0.0 && !held(*i));
+                let own: Vec<f64> = acts.map(|(_, (f, d))| f / (d * ready.island.unit).sqrt()).collect();
+                let size = weighted_norm(&own, |_| 1.0);
+                of_parts[p] = LoadOfWhole { size, largest: largest_load(load, grounded) };
+            }
+        }
         let of_host = |body: usize| match parts.only(body) {
-            Some(_) => 0.0,
-            None => weighted_norm(&parts.of(body).map(of_part).collect::<Vec<_>>(), |_| 1.0),
+            Some(_) => LoadOfWhole::default(),
+            None => {
+                let own = &of_parts[parts.of(body)];
+                let sizes: Vec<f64> = own.iter().map(|of| of.size).collect();
+                let largest = own.iter().fold(0.0, |most: f64, of| most.max(of.largest));
+                LoadOfWhole { size: weighted_norm(&sizes, |_| 1.0), largest }
+            }
         };
         (0..parts.offsets.len() - 1).map(of_host).collect()
     }
@@ -205,7 +215,7 @@ impl Prepared {
                 pairs,
             });
         }
-        let loads = self.loads_of_hosts(model);
+        let loads = self.loads_of_hosts(model, &ready);
         Ok(Duals { of: model.revisions, islands: ready, operators, island_of, loads })
     }
 }

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::body::{GeneralizedInverse, Pilots, Symbolic};
+use crate::certificate::LoadOfWhole;
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
@@ -56,9 +57,8 @@ pub struct Duals {
     pub operators: Operators,
     /// Island of every body.
     pub island_of: Vec<usize>,
-    /// `(f'D^-1 f)^1/2` of every body of the host that has several parts, without grounded unknowns, (force x length)^1/2; empty if none
-    /// has.
-    pub loads: Vec<f64>,
+    /// Of every body of the host that has several parts; empty if none has.
+    pub loads: Vec<LoadOfWhole>,
 }
 
 /// Work of all setups since the problem was created: differences show the cost of a change of the data.
@@ -101,10 +101,10 @@ impl Prepared {
         self.duals(model).ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))
     }
 
-    /// `loads` of the host's body to which a body belongs, 0 if that is the body.
-    pub fn load_of_whole(&self, model: &SolvedModel, body: usize) -> f64 {
+    /// The load of the host's body to which a body belongs.
+    pub fn load_of_whole(&self, model: &SolvedModel, body: usize) -> LoadOfWhole {
         let of = |parts: &Arc<Parts>| Some(self.duals.as_ref()?.loads[parts.parts[body].body]);
-        model.parts.as_ref().and_then(of).unwrap_or(0.0)
+        model.parts.as_ref().and_then(of).unwrap_or_default()
     }
 
     /// K+ of the present body, if made.

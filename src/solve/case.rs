@@ -56,7 +56,7 @@ impl<'a> Case<'a> {
             bodies.push(BodyData {
                 stiffness: body.k().ok_or_else(missing)?,
                 load: body.load.as_deref(),
-                load_of_whole: self.prepared.load_of_whole(model, p),
+                whole: self.prepared.load_of_whole(model, p),
                 null_space: &inverse.kplus.null_space,
                 soft: inverse.kplus.is_soft(),
                 unit: body.without(island.unit),

@@ -155,6 +155,22 @@ fn a_load_on_a_part_is_nothing_if_it_is_rounding_of_that_of_the_whole_matrix() {
     }
 }
 
+/// Springs of 1e-16 and of 1 under the same loads in one K: by its flexibility the soft part has all the load, and yet the other's is
+/// not held.
+#[test]
+fn a_soft_part_does_not_make_the_load_of_another_nothing() {
+    let mut problem = Problem::new();
+    problem.add_body(3).unwrap();
+    let (ptr, col, val) = ([0, 1, 2, 4], [0, 1, 1, 2], [1e-16, 1.0, -1.0, 1.0]);
+    problem
+        .set_stiffness(0, SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower })
+        .unwrap();
+    problem.set_load(0, &[1.0, 1e-3, 0.0]).unwrap();
+    assert_eq!(problem.solve().unwrap_err().kind, Kind::LoadNotHeld);
+    problem.set_load(0, &[1.0, 1e-3, -1e-3]).unwrap();
+    assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+}
+
 /// A chain given by elements and cut, and two springs in one matrix or as two bodies, joined by rows.
 #[test]
 fn parts_beside_a_body_that_is_cut_are_judged_as_separate_bodies() {

@@ -196,7 +196,7 @@ impl DenseModel {
             bodies.push(BodyData {
                 stiffness: (&matrices[p]).into(),
                 load: Some(&part.load),
-                load_of_whole: 0.0,
+                whole: LoadOfWhole::default(),
                 null_space: &spaces[p],
                 soft: false,
                 unit: part.unit(),

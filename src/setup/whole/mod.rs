@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::body::GeneralizedInverse;
-use crate::certificate::{certify, grounded, BodyData, Candidate, Data, Judgement};
+use crate::certificate::{certify, grounded, BodyData, Candidate, Data, Judgement, LoadOfWhole};
 use crate::constraints::{RowKind, RowSet, Touched};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::power_of_two_below;
@@ -172,7 +172,7 @@ impl Whole {
             bodies.push(BodyData {
                 stiffness,
                 load: Some(load),
-                load_of_whole: 0.0,
+                whole: LoadOfWhole::default(),
                 null_space: own.null_space.vectors(),
                 soft: own.soft,
                 unit: if largest > 0.0 { power_of_two_below(largest) } else { self.island.unit },

@@ -5,7 +5,7 @@ use crate::constraints::{FrictionNode, RowKind};
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::graph::joined;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{norm_max, ratio, weighted_norm, NOISE};
+use crate::linalg::vector::{norm_max, ratio, weighted_norm};
 use crate::linalg::ByBody;
 use crate::model::Accuracy;
 use crate::numbers::solve::{BEYOND, LOAD_RANGE};
@@ -94,8 +94,10 @@ impl Unheld {
             let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
             weighted_norm(&own.collect::<Vec<_>>(), |_| 1.0)
         };
-        let whole = data.bodies.iter().map(|body| body.load_of_whole / ready.island.unit.sqrt());
-        let told = loads.iter().zip(whole).map(|(own, whole)| if *own <= NOISE * whole { whole } else { *own });
+        let unit = ready.island.unit.sqrt();
+        let told = loads.iter().zip(&data.bodies);
+        let told =
+            told.map(|(own, body)| if body.is_noise(own * unit) { body.whole.size / unit } else { *own });
         let told: Vec<f64> = told.collect();
         let of_clusters: Vec<f64> =
             (0..count).map(|k| ratio(of_cluster(k, &left), of_cluster(k, &told))).collect();
