@@ -35,6 +35,8 @@ pub enum Kind {
     Callback,
     /// A file could not be read or written, or it is damaged.
     Io,
+    /// Another rank cannot be reached, or runs another build of the library.
+    Communication,
 }
 
 /// What proves that there is no solution; `margin`, above 0 and at most 1, says how clearly.

@@ -90,6 +90,8 @@ pub mod platform;
 mod progress;
 #[doc(hidden)]
 pub mod qp;
+#[doc(hidden)]
+pub mod ranks;
 mod setup;
 mod solve;
 pub mod solver;

@@ -70,6 +70,11 @@ impl Interrupt {
         self.flag.iter().for_each(|flag| flag.store(true, Ordering::Relaxed));
     }
 
+    /// Seconds until its limit; infinite without one.
+    pub fn seconds_left(&self) -> f64 {
+        self.time.as_ref().map_or(f64::INFINITY, |(clock, limit)| limit - clock())
+    }
+
     pub fn check(&self) -> Result<()> {
         if is_short() {
             return Err(Error::new(Kind::Memory, "memory for a small block could not be reserved"));

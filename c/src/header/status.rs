@@ -97,7 +97,8 @@ pub(crate) fn of_kind(kind: Kind, arguments: &[&str]) -> (i32, i32) {
         Kind::NullSpace => FETI_NULL_SPACE,
         Kind::Indefinite => FETI_INDEFINITE,
         Kind::Overflow => FETI_OVERFLOW,
-        Kind::Internal => FETI_INTERNAL,
+        // no function of C gives ranks
+        Kind::Internal | Kind::Communication => FETI_INTERNAL,
         Kind::Unsupported => FETI_UNSUPPORTED,
         Kind::Cancelled => FETI_CANCELLED,
         Kind::TimeOver => FETI_TIME,
