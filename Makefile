@@ -1,7 +1,7 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
 # make quick     after every change: unit tests, claims but for the three slowest, documents; make driver  NAME=c_settings: one driver
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
-# make metis     tests with the feature metis
+# make metis     tests with the feature metis                          make ranks      Rust tests with bodies lent to other ranks
 # make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls file" picks some
 # make sanitize  C and Fortran drivers under AddressSanitizer     make loom      registry and pools in all orders of two threads
 # make coverage  lines of c/src that the tests run                make overhead  what the C ABI costs on the smallest problem
@@ -34,7 +34,7 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO_BUILD_TARGET)/)release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery rungs bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
+.PHONY: all lib data setup demo battery rungs bits ranks test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
 .PHONY: quick driver man deb
 .PHONY: abi licences numbers vary packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
@@ -162,6 +162,10 @@ rungs:
 	    BATTERY=$(N) BATTERY_SEED=$(or $(SEED),0) BATTERY_MIXTURE=$$mixture $(CARGO) test --release --locked --test batteries -- \
 	        what_each_second_try --ignored --nocapture --test-threads=1 || exit 1; \
 	done | python3 tools/mutants/rungs.py tools/mutants/rungs.txt
+
+# Every Rust test with bodies lent to two ranks on threads.
+ranks:
+	@tools/ranks.sh
 
 # The bits of many answers, a line for 100: `make bits > before`, then again after a change that is to keep them.
 bits:

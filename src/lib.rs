@@ -92,6 +92,7 @@ mod progress;
 pub mod qp;
 #[doc(hidden)]
 pub mod ranks;
+mod serving;
 mod setup;
 mod solve;
 pub mod solver;

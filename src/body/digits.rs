@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::linalg::{Matrix, Symmetric};
 use crate::numbers::body::{LAST_DIGITS_USED, PIVOT_ROUNDING, ROWS_SUM_TO_0, SIMPLE};
 use crate::platform::memory::{reserved, zeros};
+use crate::ranks::Wire;
 
 /// Number of rows in the sample, and of entries per row.
 const ROWS: usize = 64;
@@ -31,6 +32,23 @@ pub enum Digits {
     Decimal(usize),
     /// Single precision.
     Single,
+}
+
+/// As the number of decimal digits, 0 for single precision.
+impl Wire for Digits {
+    fn put(&self, to: &mut Vec<u8>) {
+        match self {
+            Self::Decimal(digits) => digits.put(to),
+            Self::Single => 0usize.put(to),
+        }
+    }
+
+    fn take(from: &mut &[u8]) -> Result<Self> {
+        Ok(match usize::take(from)? {
+            0 => Self::Single,
+            digits => Self::Decimal(digits),
+        })
+    }
 }
 
 impl fmt::Display for Digits {

@@ -5,7 +5,9 @@
 use std::sync::Arc;
 
 use crate::body::carried::{self, Carried, Motions};
+use crate::body::elsewhere::Elsewhere;
 use crate::body::host::HostMultiple;
+use crate::body::layout::Symbolic;
 use crate::body::misfit::Misfit;
 use crate::linalg::vector::NOISE;
 use crate::numbers::body::MOST_ROUNDING;
@@ -17,7 +19,7 @@ use crate::body::soft::{known_to_entries, soft_motions};
 use crate::body::spectrum::Doubt;
 use crate::error::Result;
 use crate::linalg::cholesky::inverse_form;
-use crate::linalg::{Analysis, Csr, Matrix, Multiple, Packed};
+use crate::linalg::{Csr, Matrix, Multiple, Packed};
 use crate::platform::slabs::Slabs;
 
 #[derive(Clone)]
@@ -61,21 +63,6 @@ pub struct Factorised {
     pub factorisations: usize,
 }
 
-/// The input of a symbolic analysis besides the pattern of K. Bodies with the same pattern and layout share one analysis.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Layout {
-    /// The dofs held.
-    Held(Vec<usize>),
-    /// Dofs that are eliminated last.
-    Last(Vec<usize>),
-}
-
-/// A symbolic analysis and its layout.
-pub struct Symbolic {
-    pub layout: Arc<Layout>,
-    pub analysis: Arc<Analysis>,
-}
-
 impl GeneralizedInverse {
     /// (15): `x = K+ b`, both of length n; F^-1 on the free dofs, 0 on those held.
     pub fn apply(&self, b: &[f64], x: &mut [f64]) -> Result<()> {
@@ -105,15 +92,26 @@ impl GeneralizedInverse {
         }
     }
 
+    /// `x <- K+ x`; not `exact`: by `approximate_in_place`.
+    pub fn solve_in_place(&self, exact: bool, x: &mut [f64]) -> Result<()> {
+        if exact {
+            self.apply_in_place(x)
+        } else {
+            self.approximate_in_place(x)
+        }
+    }
+
     /// The factor is in single precision, and solutions are refined.
     pub fn is_rounded(&self) -> bool {
-        matches!(&self.factor, Factor::Rounded(_))
+        let elsewhere = self.elsewhere().is_some_and(|elsewhere| elsewhere.is_rounded);
+        elsewhere || matches!(&self.factor, Factor::Rounded(_))
     }
 
     /// Bytes saved by the rounded factor.
     pub fn bytes_saved(&self) -> usize {
         match &self.factor {
             Factor::Rounded(rounded) => rounded.factor.value_bytes(),
+            Factor::Elsewhere(elsewhere) => elsewhere.bytes_saved,
             Factor::Own(_) | Factor::Host(_) => 0,
         }
     }
@@ -122,7 +120,7 @@ impl GeneralizedInverse {
     pub fn rounded(mut self, k: &Multiple, slabs: &Slabs) -> Result<Self> {
         let rounded = match &self.factor {
             Factor::Own(factor) => Rounded::of(factor, k, &self.fixing, self.softness, slabs)?,
-            Factor::Rounded(_) | Factor::Host(_) => None,
+            Factor::Rounded(_) | Factor::Host(_) | Factor::Elsewhere(_) => None,
         };
         if let Some(rounded) = rounded {
             let own = std::mem::replace(&mut self.factor, Factor::Rounded(Arc::new(rounded)));
@@ -157,7 +155,10 @@ impl GeneralizedInverse {
 
     /// Number of carried motions, which are the last.
     pub fn carried_motions(&self) -> usize {
-        self.carried.as_ref().map_or(0, |carried| carried.count())
+        match &self.factor {
+            Factor::Elsewhere(elsewhere) => elsewhere.carried,
+            _ => self.carried.as_ref().map_or(0, |carried| carried.count()),
+        }
     }
 
     /// Number of motions that are not carried.
@@ -175,13 +176,14 @@ impl GeneralizedInverse {
         match &self.factor {
             Factor::Own(factor) => factor.analysis.entries(),
             Factor::Rounded(rounded) => rounded.factor.analysis.entries(),
+            Factor::Elsewhere(elsewhere) => elsewhere.entries,
             Factor::Host(_) => 0,
         }
     }
 
     /// It must be applied on the thread that calls the library.
     pub fn on_caller(&self) -> bool {
-        self.host().is_some_and(|host| host.operator.on_caller())
+        self.elsewhere().is_some() || self.host().is_some_and(|host| host.operator.on_caller())
     }
 
     /// Address of its factor: equal for all bodies that share the factor.
@@ -190,6 +192,7 @@ impl GeneralizedInverse {
             Factor::Own(factor) => Arc::as_ptr(factor) as usize,
             Factor::Rounded(rounded) => Arc::as_ptr(rounded) as usize,
             Factor::Host(host) => Arc::as_ptr(&host.operator) as usize,
+            Factor::Elsewhere(elsewhere) => elsewhere.factor as usize,
         }
     }
 
@@ -197,7 +200,15 @@ impl GeneralizedInverse {
     pub fn host(&self) -> Option<&HostMultiple> {
         match &self.factor {
             Factor::Host(host) => Some(host),
-            Factor::Own(_) | Factor::Rounded(_) => None,
+            Factor::Own(_) | Factor::Rounded(_) | Factor::Elsewhere(_) => None,
+        }
+    }
+
+    /// The K+ that another rank keeps, if this one is there.
+    pub fn elsewhere(&self) -> Option<&Elsewhere> {
+        match &self.factor {
+            Factor::Elsewhere(elsewhere) => Some(elsewhere),
+            Factor::Own(_) | Factor::Rounded(_) | Factor::Host(_) => None,
         }
     }
 
@@ -207,6 +218,7 @@ impl GeneralizedInverse {
             Factor::Own(factor) => inverse_form(factor, rows)?,
             Factor::Rounded(rounded) => rounded.inverse_form(rows)?,
             Factor::Host(host) => host.inverse_form(rows)?,
+            Factor::Elsewhere(elsewhere) => return elsewhere.inverse_form(rows),
         };
         self.carried.iter().try_for_each(|carried| carried.take_from_form(rows, &mut form))?;
         Ok(form)

@@ -6,8 +6,9 @@
 use std::sync::Arc;
 
 use crate::body::fixing::{fixing_dofs, held_against};
-use crate::body::generalized_inverse::{GeneralizedInverse, Layout, Symbolic};
+use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::known::Known;
+use crate::body::layout::{Layout, Symbolic};
 use crate::body::probe::missing_mode;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Cholesky, Matrix};

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::numbers::body::RESISTED;
+use crate::ranks::wire_struct;
 
 /// Rigid motions of coordinates, or candidates, of which not all fit K, or which are not all motions of K.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +13,8 @@ pub struct Misfit {
     /// The least `|D^-1 K v|` of a unit vector v among the others.
     pub next: f64,
 }
+
+wire_struct!(Misfit { fit, of, next });
 
 impl fmt::Display for Misfit {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {

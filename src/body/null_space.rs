@@ -11,6 +11,7 @@ use crate::linalg::{Matrix, Multiple, Symmetric};
 use crate::numbers::body::{LARGEST, PEAK};
 use crate::numbers::linalg::DEPENDENT;
 use crate::platform::memory::zeros;
+use crate::ranks::{wire_enum, wire_struct};
 
 /// The meaning of the vectors given by the host, or of the rigid motions of its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -30,6 +31,9 @@ pub struct NullSpaceInput {
     pub vectors: Matrix,
     pub modes: Modes,
 }
+
+wire_enum!(Modes { Exact, Candidates, Soft });
+wire_struct!(NullSpaceInput { vectors, modes });
 
 impl NullSpaceInput {
     /// The vectors on one component of K, whose matrix is `k`: K has no entry between components, so that null vectors of

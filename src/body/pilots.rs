@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::{Matrix, Multiple, Symmetric};
+use crate::ranks::wire_struct;
 
 /// The carried unknowns of a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +16,8 @@ pub struct Pilots {
     /// Ascending.
     pub carried: Arc<[usize]>,
 }
+
+wire_struct!(Pilots { metric, carried });
 
 impl Pilots {
     /// The motions of single unknowns, n x carried.

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use crate::body::candidates::{verified, Kernel};
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse};
 use crate::body::known::{Known, Retry};
+use crate::body::layout::{Layout, Symbolic};
 use crate::body::misfit::Misfit;
 use crate::body::null_space::{Modes, NullSpaceInput, Verified};
 use crate::body::pilots::Pilots;
@@ -17,11 +18,31 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{headroom, PRODUCTS};
 use crate::platform::tally;
+use crate::ranks::Wire;
 
 /// How K+ will be computed.
 pub enum Plan {
     Known(Known),
     Search(Search),
+}
+
+impl Wire for Plan {
+    fn put(&self, to: &mut Vec<u8>) {
+        match self {
+            Self::Known(known) => {
+                true.put(to);
+                known.put(to);
+            }
+            Self::Search(search) => {
+                false.put(to);
+                search.put(to);
+            }
+        }
+    }
+
+    fn take(from: &mut &[u8]) -> Result<Self> {
+        Ok(if bool::take(from)? { Self::Known(Wire::take(from)?) } else { Self::Search(Wire::take(from)?) })
+    }
 }
 
 impl GeneralizedInverse {
@@ -144,6 +165,14 @@ impl Plan {
             Self::Search(search) => search.analyse()?,
         };
         Ok(Arc::new(Symbolic { layout: self.layout(), analysis }))
+    }
+
+    /// K, of the same bits wherever it is kept.
+    pub fn matrix(&self) -> &Multiple {
+        match self {
+            Self::Known(known) => &known.k,
+            Self::Search(search) => search.matrix(),
+        }
     }
 
     /// Sets the analysis for the layout, made here or for another body.

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::body::elsewhere::Elsewhere;
 use crate::body::host::HostMultiple;
 use crate::body::null_space::{largest, orthonormal, overflow};
 use crate::body::rounded::Rounded;
@@ -23,6 +24,8 @@ pub(super) enum Factor {
     Rounded(Arc<Rounded>),
     /// Functions of the host for the products.
     Host(HostMultiple),
+    /// The whole K+ is on another rank.
+    Elsewhere(Elsewhere),
 }
 
 impl Factor {
@@ -32,6 +35,7 @@ impl Factor {
             Self::Own(factor) => factor.solve(x),
             Self::Rounded(rounded) => rounded.solve(x),
             Self::Host(host) => host.solve_in_place(x),
+            Self::Elsewhere(elsewhere) => elsewhere.solve(true, x),
         }
     }
 
@@ -39,6 +43,7 @@ impl Factor {
     pub fn approximate(&self, x: &mut [f64]) -> Result<()> {
         match self {
             Self::Rounded(rounded) => rounded.approximate(x),
+            Self::Elsewhere(elsewhere) => elsewhere.solve(false, x),
             Self::Own(_) | Self::Host(_) => self.solve(x),
         }
     }

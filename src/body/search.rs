@@ -9,8 +9,9 @@ use std::sync::Arc;
 
 use crate::body::digits::{Digits, FEWEST};
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse};
 use crate::body::last::{spread, supported};
+use crate::body::layout::{Layout, Symbolic};
 use crate::body::misfit::Misfit;
 use crate::body::null_space::{exact, largest, refuse_overflow, Verified};
 use crate::body::part::{End, Soft};
@@ -26,6 +27,7 @@ use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
 use crate::numbers::body::MOST_ROUNDING;
 use crate::numbers::rounding;
 use crate::platform::memory::{headroom, PRODUCTS};
+use crate::ranks::wire_struct;
 
 /// Number of dofs eliminated last, in the first attempt.
 const LAST: usize = 24;
@@ -55,6 +57,8 @@ pub struct Search {
     pub(super) symbolic: Option<Arc<Symbolic>>,
 }
 
+wire_struct!(Search { k, tolerance, fixing, last, count, digits, few, pilots, misfit, layout, symbolic });
+
 /// An attempt ends with K+, or with a dof that t must include.
 enum Attempt {
     Done(Box<GeneralizedInverse>),
@@ -62,6 +66,11 @@ enum Attempt {
 }
 
 impl Search {
+    /// K, also if rows carry unknowns.
+    pub(super) fn matrix(&self) -> &Multiple {
+        self.pilots.as_ref().map_or(&self.k, |(_, k)| k)
+    }
+
     /// `fixing`: the dofs to hold in K+, if the host has given them.
     pub fn new(k: Multiple, tolerance: f64, fixing: Option<&[usize]>) -> Result<Self> {
         let _room = headroom(k.order() * PER_DOF, "the null space of a body")?;

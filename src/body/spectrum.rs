@@ -12,6 +12,7 @@ use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::vector::{dot, NOISE};
 use crate::linalg::{Matrix, Multiple};
 use crate::numbers::body::{DEVIATIONS, GAP, MAY_BE_FREE, MEASURED, NEGATIVE, TRIFLE, WEAK_SPRINGS};
+use crate::ranks::wire_struct;
 
 /// Weak springs of a host hold up to six rigid motions of a part, ...
 const RIGID: usize = 6;
@@ -28,6 +29,8 @@ pub struct Doubt {
     /// They are treated as free; as supports if no gap separates them from the other motions.
     pub free: bool,
 }
+
+wire_struct!(Doubt { digits, motions, resisted, rounding, free });
 
 impl fmt::Display for Doubt {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -11,6 +11,7 @@
 mod alike;
 mod cost;
 mod coupling;
+mod elsewhere;
 mod images;
 mod multiples;
 mod operator;
@@ -21,6 +22,7 @@ mod turned;
 
 pub use cost::{all_bytes, implicit_bodies, DistinctRows, Size};
 pub use coupling::dependent_rows;
+pub use elsewhere::Form;
 pub use operator::Accuracy;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
 pub use reuse::{ColumnCounts, Kept};
@@ -29,15 +31,16 @@ pub use turned::{TurnedFace, TurnedRow};
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::body::GeneralizedInverse;
+use crate::body::{Asking, GeneralizedInverse};
 use crate::constraints::Touched;
+use crate::dual::elsewhere::Each;
 use crate::dual::images::{coarse, scale_by_body};
 use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::dual::springs::{add_springs, negative_modes};
 use crate::error::Result;
 use crate::linalg::vector::{dot, norm_max, weighted_norm, NOISE};
-use crate::linalg::{ByBody, Csr, Packed};
+use crate::linalg::{ByBody, Csr};
 use crate::platform::memory::zeros;
 use crate::platform::tally;
 
@@ -54,8 +57,8 @@ struct Subdomain {
     matrix: Arc<Csr>,
     /// `B_p = T B`
     multiples: Multiples,
-    /// `B K_p+ B'`, the part of F_p between T and T'; none: F_p is applied through K_p+.
-    operator: Option<Arc<Packed>>,
+    /// `B K_p+ B'`, the part of F_p between T and T'; none: F_p is applied through K_p+. On another rank it may be F_p, not assembled.
+    operator: Option<Form>,
     /// Power of two by which `K_p+` and its products are multiplied, so that forces of all bodies have one unit.
     by: f64,
     /// Multiplications of a product with F_p, and of a factorisation of K_p.
@@ -128,8 +131,20 @@ impl Draft {
         Self { subdomains, distinct }
     }
 
-    /// `B K_p+ B'` of body p, none if it is matrix-free; must be called only once per body.
-    pub fn assemble(&self, p: usize) -> Result<Option<Arc<Packed>>> {
+    /// The question for `B K_p+ B'` of body p if it is to be made on another rank, and what stands for it here.
+    pub fn asking(&self, p: usize) -> Option<(Asking, Form)> {
+        let (s, (rows, reuse)) = (&self.subdomains[p], &self.distinct[p]);
+        let elsewhere = s.kplus.elsewhere()?;
+        let (asking, form) = match reuse {
+            None => elsewhere.operator(&s.matrix, false),
+            Some(reuse) if reuse.is_all() => return None,
+            Some(_) => elsewhere.operator(rows, true),
+        };
+        Some((asking, Form::Elsewhere(Arc::new(form))))
+    }
+
+    /// `B K_p+ B'` of body p, none if it is matrix-free; must be called only once per body, and not if another rank makes it.
+    pub fn assemble(&self, p: usize) -> Result<Option<Form>> {
         let (rows, reuse) = &self.distinct[p];
         reuse.as_ref().map(|reuse| reuse.operator(&self.subdomains[p].kplus, rows)).transpose()
     }
@@ -141,12 +156,7 @@ impl Draft {
 
     /// The dual problem with the assembled operators; `compliance`: the diagonal of C, m entries. `balanced`: scales R_p
     /// so that `|G_p|` is in [1, 2) for every body that rows touch; otherwise R_p is not scaled.
-    pub fn finish(
-        self,
-        operators: Vec<Option<Arc<Packed>>>,
-        mut compliance: Vec<f64>,
-        balanced: bool,
-    ) -> Dual {
+    pub fn finish(self, operators: Vec<Option<Form>>, mut compliance: Vec<f64>, balanced: bool) -> Dual {
         let mut subdomains = self.subdomains;
         subdomains.iter_mut().zip(operators).for_each(|(s, operator)| s.operator = operator);
         let modes = subdomains.last().map_or(0, |s| s.modes.end);
@@ -166,7 +176,7 @@ impl Dual {
     /// The assembled operators of the bodies with their rows, for a dual problem with other rows.
     pub fn operators(&self) -> Vec<Option<Box<Kept>>> {
         let kept = |s: &Subdomain| {
-            Some(Box::new(Kept::new(Multiples::of(&s.matrix).1, Arc::clone(s.operator.as_ref()?))))
+            s.explicit().map(|of| Box::new(Kept::new(Multiples::of(&s.matrix).1, of.clone())))
         };
         self.subdomains.iter().map(kept).collect()
     }
@@ -217,12 +227,29 @@ impl Dual {
         self.subdomains.len()
     }
 
-    /// `B_p K_p+ f_p` over the rows that touch body p: the motion caused by its load alone.
-    pub fn moved(&self, p: usize, f: &[f64]) -> Result<Vec<f64>> {
-        let s = &self.subdomains[p];
-        let mut x = zeros(f.len(), "a displacement")?;
-        s.kplus.apply(f, &mut x)?;
-        Ok((0..s.rows.len()).map(|k| s.by * s.matrix.row_dot(k, &x)).collect())
+    /// `B_p K_p+ f_p` over the rows that touch each body: the motion caused by its load alone.
+    pub fn moved(&self, f: &ByBody, in_parallel: &InParallel<Vec<f64>>) -> Result<Vec<Vec<f64>>> {
+        let along_rows = |p: usize, u: Vec<f64>| {
+            let s = &self.subdomains[p];
+            (0..s.rows.len()).map(|k| s.by * s.matrix.row_dot(k, &u)).collect()
+        };
+        self.solutions(f, &along_rows, in_parallel)
+    }
+
+    /// What follows from `K_p+ f_p` of every body.
+    fn solutions(
+        &self,
+        f: &ByBody,
+        of: &(dyn Fn(usize, Vec<f64>) -> Vec<f64> + Sync),
+        in_parallel: &InParallel<Vec<f64>>,
+    ) -> Result<Vec<Vec<f64>>> {
+        let own = |p: usize| {
+            let mut u = zeros(f.on(p).len(), "a displacement")?;
+            self.subdomains[p].kplus.apply(f.on(p), &mut u)?;
+            Ok(of(p, u))
+        };
+        let asking = |p: usize| Some(self.subdomains[p].kplus.elsewhere()?.solving(f.on(p).to_vec()));
+        self.each(&Each { own: &own, asking: &asking, of_answer: of }, in_parallel)
     }
 
     /// `d = B K+ f - c` of (13), from `moved` of each body.
@@ -244,8 +271,7 @@ impl Dual {
         in_parallel: &InParallel<Vec<f64>>,
     ) -> Result<Vec<f64>> {
         tally::costly();
-        let images =
-            in_parallel(self.subdomains.len(), &|p| self.subdomains[p].product(x, Accuracy::OfFactors))?;
+        let images = self.images(x, Accuracy::OfFactors, in_parallel)?;
         let mut distances = vec![0.0; x.len()];
         for ((s, moved), image) in self.subdomains.iter().zip(moved).zip(&images) {
             for ((&i, moved), image) in s.rows.iter().zip(moved).zip(image) {
@@ -299,14 +325,14 @@ impl Dual {
         load
     }
 
-    /// `u_p = K_p+ f_p` of body p, (17) without its rigid motion, for the load f left by the forces of the rows; (16) if
+    /// `u_p = K_p+ f_p` of every body, (17) without its rigid motion, for the load f left by the forces of the rows; (16) if
     /// it is held, K+ = K^-1.
-    pub fn displacement(&self, p: usize, f: &[f64]) -> Result<Vec<f64>> {
-        let s = &self.subdomains[p];
-        let mut u = zeros(f.len(), "a displacement")?;
-        s.kplus.apply(f, &mut u)?;
-        u.iter_mut().for_each(|u| *u *= s.by);
-        Ok(u)
+    pub fn displacements(&self, f: &ByBody, in_parallel: &InParallel<Vec<f64>>) -> Result<Vec<Vec<f64>>> {
+        let in_unit = |p: usize, mut u: Vec<f64>| {
+            u.iter_mut().for_each(|u| *u *= self.subdomains[p].by);
+            u
+        };
+        self.solutions(f, &in_unit, in_parallel)
     }
 
     /// `v += R a` of body p, a over all modes.

@@ -60,6 +60,14 @@ impl Multiples {
         (0..rows).map(|i| self.row(i).of + 1).max().unwrap_or(0)
     }
 
+    /// Rows of B that these rows of B_p are multiples of, ascending.
+    pub fn distinct(&self, rows: impl Iterator<Item = usize>) -> Vec<usize> {
+        let mut all: Vec<usize> = rows.map(|i| self.row(i).of).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
     /// `T' x_p` of the entries `rows` of x.
     pub fn gather(&self, rows: &[usize], x: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.count];

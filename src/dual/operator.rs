@@ -2,6 +2,8 @@
 //! = B_p (K_p+ (B_p'x))` (implicit). Also entries of F, gathered from the operators of the bodies and the compliance of
 //! the rows.
 
+use crate::body::Asking;
+use crate::dual::elsewhere::{Each, Form};
 use crate::dual::{Dual, InParallel, Subdomain};
 use crate::error::Result;
 use crate::linalg::{Csr, Entries, Matrix, Operator};
@@ -22,24 +24,45 @@ pub enum Accuracy {
 
 impl Subdomain {
     /// `F_p x`, x over all rows of B, the product over the rows of the body.
-    pub(super) fn product(&self, x: &[f64], by: Accuracy) -> Result<Vec<f64>> {
-        if let Some(explicit) = &self.operator {
+    fn product(&self, x: &[f64], by: Accuracy) -> Result<Vec<f64>> {
+        if let Some(Form::Own(explicit)) = &self.operator {
             let local = self.multiples.gather(&self.rows, x);
             let mut image = vec![0.0; local.len()];
             explicit.apply(&local, &mut image);
-            return Ok(self.multiples.spread(&image).map(|v| self.by * v).collect());
+            return Ok(self.image_of(image));
         }
-        let local: Vec<f64> = self.rows.iter().map(|&i| x[i]).collect();
-        let mut moved = zeros(self.matrix.cols, WHAT)?;
+        let (local, mut moved) = (self.gather(x), zeros(self.matrix.cols, WHAT)?);
         self.matrix.mul_transposed_add(1.0, &local, &mut moved);
-        match by {
-            Accuracy::Full => self.kplus.apply_in_place(&mut moved)?,
-            Accuracy::OfFactors => self.kplus.approximate_in_place(&mut moved)?,
-        }
+        self.kplus.solve_in_place(by == Accuracy::Full, &mut moved)?;
         let mut image = vec![0.0; local.len()];
         self.matrix.mul(&moved, &mut image);
+        Ok(self.image_of(image))
+    }
+
+    /// The question for the product if F_p is on another rank.
+    fn asking(&self, x: &[f64], by: Accuracy) -> Option<Asking> {
+        let Some(Form::Elsewhere(form)) = &self.operator else { return None };
+        let local = if form.explicit { self.multiples.gather(&self.rows, x) } else { self.gather(x) };
+        Some(form.multiplying(by == Accuracy::Full, local))
+    }
+
+    /// The entries of x of its rows.
+    fn gather(&self, x: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&i| x[i]).collect()
+    }
+
+    /// `F_p x` over the rows of the body, from `B K_p+ B' (T'x)` if F_p is assembled, otherwise from `B_p K_p+ B_p'x`.
+    fn image_of(&self, mut image: Vec<f64>) -> Vec<f64> {
+        if self.explicit().is_some() {
+            return self.multiples.spread(&image).map(|v| self.by * v).collect();
+        }
         image.iter_mut().for_each(|v| *v *= self.by);
-        Ok(image)
+        image
+    }
+
+    /// The assembled operator.
+    pub(super) fn explicit(&self) -> Option<&Form> {
+        self.operator.as_ref().filter(|form| form.is_explicit())
     }
 }
 
@@ -54,7 +77,7 @@ impl Dual {
         in_parallel: &InParallel<Vec<f64>>,
     ) -> Result<()> {
         tally::costly();
-        let images = in_parallel(self.subdomains.len(), &|p| self.subdomains[p].product(x, by))?;
+        let images = self.images(x, by, in_parallel)?;
         y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
         for (s, image) in self.subdomains.iter().zip(&images) {
             s.rows.iter().zip(image).for_each(|(&i, v)| y[i] += v);
@@ -62,9 +85,24 @@ impl Dual {
         Ok(())
     }
 
+    /// `F_p x` of every body.
+    pub(super) fn images(
+        &self,
+        x: &[f64],
+        by: Accuracy,
+        in_parallel: &InParallel<Vec<f64>>,
+    ) -> Result<Vec<Vec<f64>>> {
+        let each = Each {
+            own: &|p| self.subdomains[p].product(x, by),
+            asking: &|p| self.subdomains[p].asking(x, by),
+            of_answer: &|p, answer| self.subdomains[p].image_of(answer),
+        };
+        self.each(&each, in_parallel)
+    }
+
     /// Products of body p with F_p must be computed on the thread that calls the library.
     pub fn multiplies_on_caller(&self, p: usize) -> bool {
-        self.subdomains[p].operator.is_none() && self.solves_on_caller(p)
+        self.subdomains[p].explicit().is_none() && self.solves_on_caller(p)
     }
 
     /// Solves with K_p+ must run on the thread that calls the library.
@@ -89,7 +127,7 @@ impl Dual {
 
     /// Number of bodies with an assembled operator.
     pub fn explicit_bodies(&self) -> usize {
-        self.subdomains.iter().filter(|s| s.operator.is_some()).count()
+        self.subdomains.iter().filter(|s| s.explicit().is_some()).count()
     }
 
     /// Number of bodies with a matrix-free operator.
@@ -119,7 +157,7 @@ impl Operator for Dual {
     }
 
     fn has_approximation(&self) -> bool {
-        self.subdomains.iter().any(|s| s.operator.is_none() && s.kplus.is_rounded())
+        self.subdomains.iter().any(|s| s.explicit().is_none() && s.kplus.is_rounded())
     }
 
     fn bytes_kept(&self) -> usize {
@@ -145,13 +183,31 @@ impl Entries for Dual {
 impl Subdomain {
     /// Adds the lower triangle of F_p on the rows common to block and body.
     fn add_common(&self, common: &[(usize, usize)], block: &mut Matrix) -> Result<()> {
-        if let Some(explicit) = &self.operator {
-            let entry = |i, j| self.multiples.entry(i, j, |i, j| explicit.get(i, j));
-            add(common, |k, l| self.by * entry(common[k].1, common[l].1), block);
-            return Ok(());
-        }
         if common.is_empty() {
             return Ok(());
+        }
+        let mut add_entries = |of: &dyn Fn(usize, usize) -> f64| {
+            let entry = |i, j| self.multiples.entry(i, j, of);
+            add(common, |k, l| self.by * entry(common[k].1, common[l].1), block);
+        };
+        match &self.operator {
+            Some(Form::Own(form)) => {
+                add_entries(&|i, j| form.get(i, j));
+                return Ok(());
+            }
+            Some(Form::Elsewhere(form)) if form.explicit => {
+                let rows = self.multiples.distinct(common.iter().map(|of| of.1));
+                let entries = form.block(rows.clone())?;
+                let at = |i: usize| rows.partition_point(|row| *row < i);
+                add_entries(&|i, j| entries.get(at(i), at(j)));
+                return Ok(());
+            }
+            Some(Form::Elsewhere(form)) => {
+                let entries = form.block(common.iter().map(|of| of.1).collect())?;
+                add(common, |k, l| self.by * entries.get(k, l), block);
+                return Ok(());
+            }
+            None => {}
         }
         let mut selected = Csr::empty(self.matrix.cols);
         common.iter().for_each(|&(_, i)| selected.push_row(self.matrix.row(i)));

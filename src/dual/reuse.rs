@@ -5,14 +5,15 @@ use std::iter::Sum;
 use std::sync::{Arc, Mutex};
 
 use crate::body::{GeneralizedInverse, HostMultiple};
+use crate::dual::elsewhere::Form;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, START};
-use crate::linalg::{Csr, Operator, Packed};
+use crate::linalg::{Csr, Packed};
 
 /// `F_p` and the rows of B over body p for which it was made.
 pub struct Kept {
     rows: Arc<Csr>,
-    operator: Arc<Packed>,
+    operator: Form,
 }
 
 /// Counts of the columns of dual operators, one for each row and body that it touches.
@@ -34,12 +35,12 @@ pub(super) enum Reuse {
 }
 
 impl Kept {
-    pub(super) fn new(rows: Arc<Csr>, operator: Arc<Packed>) -> Self {
+    pub(super) fn new(rows: Arc<Csr>, operator: Form) -> Self {
         Self { rows, operator }
     }
 
     pub fn bytes(&self) -> usize {
-        Packed::bytes(self.operator.order())
+        self.operator.bytes_kept()
     }
 }
 
@@ -74,18 +75,26 @@ impl Reuse {
         }
     }
 
+    /// No row is new.
+    pub fn is_all(&self) -> bool {
+        matches!(self, Self::All(..))
+    }
+
     /// `F_p = B_p K_p+ B_p'` of the new rows; must be called only once.
-    pub fn operator(&self, kplus: &GeneralizedInverse, rows: &Csr) -> Result<Arc<Packed>> {
-        match (self, kplus.host()) {
-            (Self::All(kept, _), _) => kept
-                .lock()
-                .ok()
-                .and_then(|mut kept| kept.take())
-                .map(|kept| kept.operator)
-                .ok_or_else(|| Error::new(Kind::Internal, "a dual operator was asked for twice")),
-            (Self::Some { kept, old }, Some(host)) => extended(&kept.operator, old, host, rows).map(Arc::new),
-            _ => kplus.inverse_form(rows).map(Arc::new),
-        }
+    pub fn operator(&self, kplus: &GeneralizedInverse, rows: &Csr) -> Result<Form> {
+        let made = match (self, kplus.host()) {
+            (Self::All(kept, _), _) => {
+                let kept = kept.lock().ok().and_then(|mut kept| kept.take());
+                let twice = || Error::new(Kind::Internal, "a dual operator was asked for twice");
+                return kept.map(|kept| kept.operator).ok_or_else(twice);
+            }
+            (Self::Some { kept, old }, Some(host)) => match &kept.operator {
+                Form::Own(before) => extended(before, old, host, rows)?,
+                Form::Elsewhere(_) => kplus.inverse_form(rows)?,
+            },
+            _ => kplus.inverse_form(rows)?,
+        };
+        Ok(Form::Own(Arc::new(made)))
     }
 }
 

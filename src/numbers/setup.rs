@@ -14,6 +14,8 @@ pub const ASSEMBLED: f64 = 0.6;
 pub const ASSEMBLED_LUMPED: f64 = 0.98;
 /// Power of the entries of a factor with which its operations grow.
 pub const WORK: f64 = 1.5;
+/// Operations in the time in which a byte is sent to another rank: a body that costs less per byte of its K is not lent.
+pub const SENT: f64 = 20.0;
 /// Time until the next message, relative to the time so far.
 pub const NEXT_MESSAGE: f64 = 0.1;
 /// Ratio of the bodies' parts of b D^-1 b' from which rounding of one counts beside the other (S13).

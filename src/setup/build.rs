@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::body::Pilots;
 use crate::certificate::{everywhere, largest_load, LoadOfWhole, Metric};
 use crate::constraints::RowKind;
-use crate::dual::{self, DistinctRows, Draft, Dual};
+use crate::dual::{self, DistinctRows, Draft, Dual, Form};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, Shared, START};
 use crate::linalg::vector::weighted_norm;
@@ -187,9 +187,24 @@ impl Prepared {
             until: assembled(&model.settings),
             on_caller: model.on_caller(&all),
         };
-        let mut made: Vec<_> = all.iter().map(|_| None).collect();
-        let assemble = |p: usize| drafts[island_of[p]].assemble(number_in[p]).map_err(|e| e.body(p));
-        watch.every_body(&part, assemble, |p, operator| made[p] = operator)?;
+        let mut made: Vec<Option<Form>> = all.iter().map(|_| None).collect();
+        let mut questions = Vec::new();
+        for &p in &all {
+            if let Some((asking, form)) = drafts[island_of[p]].asking(number_in[p]) {
+                questions.push((p, asking));
+                made[p] = Some(form);
+            }
+        }
+        let is_asked: Vec<bool> = made.iter().map(Option::is_some).collect();
+        let owed = watch.stops.interrupt.during(|| self.ask(questions))?;
+        let assemble = |p: usize| match is_asked[p] {
+            true => Ok(None),
+            false => drafts[island_of[p]].assemble(number_in[p]).map_err(|e| e.body(p)),
+        };
+        watch.every_body(&part, assemble, |p, operator| made[p] = operator.or(made[p].take()))?;
+        for (p, answer) in owed.answers::<()>()? {
+            answer.map_err(|e| e.body(p))?;
+        }
         let mut ready = reserved(islands.len(), "groups of bodies")?;
         let mut known = Shared::default();
         for (WithRows { island, rows, metric, compliance }, draft) in islands.into_iter().zip(drafts) {

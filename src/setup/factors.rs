@@ -4,25 +4,23 @@
 
 use std::collections::{HashMap, HashSet};
 use std::hash::Hash;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Instant;
 
 use crate::body::{
-    input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Pilots, Plan, Symbolic,
+    input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic,
 };
-use crate::certificate::grounded;
 use crate::dual::{DistinctRows, Size};
-use crate::error::{Error, Kind, Result};
-use crate::linalg::{Multiple, Symmetric};
+use crate::error::Result;
 use crate::model::SolvedModel;
-use crate::numbers::setup::{ANALYSED, FACTORISED, WORK};
-use crate::platform::slabs::Slabs;
+use crate::numbers::setup::ANALYSED;
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
+use crate::setup::execute::{Made, Planned};
 use crate::setup::memory_limit::check_memory;
 use crate::setup::operators::Operators;
-use crate::setup::plans::{of_coordinates, plans, weights};
-use crate::setup::prepared::{Inverse, Prepared};
+use crate::setup::plans::{plans, weights};
+use crate::setup::prepared::Prepared;
 use crate::setup::rounding::may_be_rounded;
 
 /// Number of analyses for a pattern that a body tries before it makes a new one.
@@ -38,7 +36,11 @@ impl Prepared {
         watch: &mut Watch,
     ) -> Result<Operators> {
         if self.bodies.iter().all(|own| own.inverse.is_some()) {
-            return self.operators(model, rows, &self.entries(&[], &[], &[]), 0);
+            let operators = self.operators(model, rows, &self.entries(&[], &[], &[]), 0);
+            let all: Vec<usize> = (0..self.bodies.len()).collect();
+            let ranks = self.lend(model, (&all, &|p| p), &operators);
+            self.check_memory(model, &operators, 0, operators.bytes_on_others(&ranks))?;
+            return Ok(operators);
         }
         self.try_hosts(model, watch)?;
         let begun = Instant::now();
@@ -51,18 +53,23 @@ impl Prepared {
         self.analyse(model, &pending, &mut plans, watch)?;
         let begun = watch.phases.ended(Phase::Analysis, begun);
         let factors = self.factors_for(model, &pending, &plans);
-        let own = plans.iter().zip(&factors).filter(|(_, factor)| factor.is_none());
-        let bytes = own.map(|(plan, _)| plan.bytes()).sum();
+        let bytes_of = |k: usize| if factors[k].is_none() { plans[k].bytes() } else { 0 };
+        let bytes = (0..pending.len()).map(bytes_of).sum();
         let mut operators =
-            self.operators(model, rows, &self.entries(&representatives, &pending, &plans), bytes)?;
+            self.operators(model, rows, &self.entries(&representatives, &pending, &plans), bytes);
         let given: HashMap<usize, usize> =
             pending.iter().zip(&factors).filter_map(|(p, factor)| Some((*p, (*factor)?))).collect();
         let owner = |p: usize| given.get(&representatives[p]).copied().unwrap_or(representatives[p]);
         let rounded = may_be_rounded(model, &operators, owner);
-        let ended = self.execute(model, (&pending, plans, factors), &rounded, watch);
+        let ranks = self.lend(model, (&representatives, &owner), &operators);
+        let mut here = vec![false; ranks.len()];
+        (0..ranks.len()).filter(|p| ranks[*p] == 0).for_each(|p| here[representatives[p]] = true);
+        let on_others = (0..pending.len()).filter(|k| !here[pending[*k]]).map(bytes_of).sum::<usize>();
+        self.check_memory(model, &operators, bytes, on_others + operators.bytes_on_others(&ranks))?;
+        let planned = Planned { pending: &pending, plans, factors, rounded: &rounded };
+        let ended = self.execute(model, planned, (&representatives, &ranks), watch);
         watch.phases.ended(Phase::Factorisation, begun);
-        ended?;
-        self.share(&representatives);
+        self.share(&representatives, &ranks, ended?);
         operators.factor_bytes = self.bytes_of_factors();
         self.tell_doubts(model, &pending, &watch.log)?;
         Ok(operators)
@@ -77,62 +84,6 @@ impl Prepared {
             there.or_else(|| planned.get(&p).copied())
         };
         (0..self.bodies.len()).map(|p| of(p).or_else(|| of(*representatives.get(p)?)).unwrap_or(0)).collect()
-    }
-
-    /// Factorises the bodies without a known factor, then shares the factors with equal bodies.
-    fn execute(
-        &mut self,
-        model: &SolvedModel,
-        (pending, plans, factors): Planned,
-        rounded: &[bool],
-        watch: &mut Watch,
-    ) -> Result<()> {
-        let (mut own, mut others) = (Vec::new(), Vec::new());
-        for ((&p, plan), factor) in pending.iter().zip(plans).zip(factors) {
-            match factor {
-                None => {
-                    let matrix = model.bodies[p].body.stiffness.clone();
-                    let pilots = self.bodies[p].pilots.clone();
-                    own.push((p, plan.bytes(), Mutex::new(Some(plan)), (matrix, pilots)));
-                }
-                Some(q) => others.push((p, plan, q)),
-            }
-        }
-        // operations grow like the power 3/2 of the entries
-        let weights = own.iter().map(|(_, bytes, ..)| (*bytes as f64).powf(WORK)).collect();
-        let part = SetupPart::of(model.threads(), weights, FACTORISED);
-        let slabs =
-            Slabs::of(own.iter().filter(|(p, ..)| rounded[*p]).map(|(_, bytes, ..)| bytes / 2).sum())?;
-        let make = |k: usize| {
-            let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
-            let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
-            let (p, (matrix, pilots)) = (own[k].0, &own[k].3);
-            let mut made = plan.execute().map_err(|e| of_coordinates(&model.bodies[p].body, e).body(p))?;
-            if let Some(matrix) = matrix.as_ref().filter(|_| rounded[p]) {
-                let k = Multiple { matrix: Arc::clone(matrix), by: 1.0 / model.bodies[p].body.unit() };
-                made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(p))?;
-            }
-            Ok((made, grounded_in(matrix.as_ref(), pilots.as_deref())?))
-        };
-        watch.every_body(&part, make, |k, (made, grounded)| {
-            let (p, bytes) = (own[k].0, own[k].1.saturating_sub(made.inverse.bytes_saved()));
-            self.work.analyses += made.further_analyses;
-            self.work.factorisations += made.factorisations;
-            self.bodies[p].symbolic = Some(made.symbolic);
-            let (unit, kplus) = (model.bodies[p].body.unit(), Arc::new(made.inverse));
-            self.bodies[p].inverse = Some(Arc::new(Inverse { unit, kplus, grounded, bytes }));
-        })?;
-        for (p, plan, q) in others {
-            let (unit, symbolic) = (model.bodies[p].body.unit(), self.bodies[q].symbolic.clone());
-            let share = |of: &Arc<Inverse>| Ok((of.bytes, plan.with_factor_of(&of.kplus)?));
-            let of = self.bodies[q].inverse.as_ref().map(share).transpose()?;
-            self.bodies[p].symbolic = symbolic;
-            let grounded =
-                grounded_in(model.bodies[p].body.stiffness.as_ref(), self.bodies[p].pilots.as_deref())?;
-            self.bodies[p].inverse =
-                of.map(|(bytes, kplus)| Arc::new(Inverse { unit, kplus: Arc::new(kplus), grounded, bytes }));
-        }
-        Ok(())
     }
 
     /// For every plan the body with the factor, present or planned, of an equal matrix with equal dofs held; none if the
@@ -243,26 +194,26 @@ impl Prepared {
         p == q || keys[0] == keys[1] && a.zip(b).is_some_and(|(a, b)| same_pattern(a, b))
     }
 
-    /// Gives bodies without K+ the K+ of the body that represents them.
-    fn share(&mut self, representatives: &[usize]) {
-        for (p, &representative) in
-            representatives.iter().enumerate().filter(|(p, representative)| p != *representative)
-        {
-            self.bodies[p].inverse = self.bodies[representative].inverse.clone();
+    /// Gives every body the K+ of the body that represents it: what has been `made` on its rank, or was there.
+    fn share(&mut self, representatives: &[usize], ranks: &[usize], made: Made) {
+        for (p, &representative) in representatives.iter().enumerate() {
+            if let Some(inverse) = made.get(&(representative, ranks[p])) {
+                self.bodies[p].inverse = Some(Arc::clone(inverse));
+            } else if p != representative {
+                self.bodies[p].inverse = self.bodies[representative].inverse.clone();
+            }
             self.bodies[p].symbolic = self.bodies[representative].symbolic.clone();
         }
     }
 
-    /// Dual operators for these numbers of distinct rows and factor entries of the bodies; an error if they do not fit
-    /// into memory. Operators kept from previous rows are dropped if that helps. `more`: bytes of factors not made yet.
+    /// Dual operators for these numbers of distinct rows and factor entries of the bodies. `more`: bytes of factors not made yet.
     fn operators(
-        &mut self,
+        &self,
         model: &SolvedModel,
         rows: &[DistinctRows],
         entries: &[usize],
         more: usize,
-    ) -> Result<Operators> {
-        let (settings, there) = (&model.settings, self.bytes_of_factors());
+    ) -> Operators {
         let size = |p: usize| {
             let there = self.bodies[p].inverse.as_ref();
             let rounded = there.is_some_and(|inverse| inverse.kplus.is_rounded());
@@ -272,15 +223,27 @@ impl Prepared {
             Size { rows, places, unknowns, entries: entries[p], single, rounded }
         };
         let sizes: Vec<Size> = (0..rows.len()).map(size).collect();
-        let operators = Operators::new(settings, sizes, there.saturating_add(more));
+        Operators::new(&model.settings, sizes, self.bytes_of_factors().saturating_add(more))
+    }
+
+    /// An error if factors and operators do not fit into memory. Operators kept from previous rows are dropped if that helps. `more`: bytes
+    /// of factors not made yet; `on_others`: bytes that other ranks take.
+    fn check_memory(
+        &mut self,
+        model: &SolvedModel,
+        operators: &Operators,
+        more: usize,
+        on_others: usize,
+    ) -> Result<()> {
+        let there = self.bytes_of_factors();
         let more = more.saturating_add(operators.bytes);
+        let check = |kept: usize| check_memory(&model.settings, there, more.saturating_add(kept), on_others);
         let kept = self.bodies.iter().filter_map(|own| own.operator.as_ref());
         let kept: usize = kept.map(|kept| kept.bytes()).sum();
-        if kept > 0 && check_memory(settings, there, more.saturating_add(kept)).is_err() {
+        if kept > 0 && check(kept).is_err() {
             self.bodies.iter_mut().for_each(|own| own.operator = None);
         }
-        check_memory(settings, there, more).map_err(|error| operators.named(error))?;
-        Ok(operators)
+        check(0).map_err(|error| operators.named(error))
     }
 
     /// Logs what rounding of the entries leaves uncertain about the null spaces of these bodies.
@@ -319,18 +282,6 @@ fn same_stiffness(model: &SolvedModel, p: usize, q: usize) -> bool {
     let [a, b] = [p, q].map(|p| model.bodies[p].body.stiffness.as_ref());
     a.zip(b).is_some_and(|(a, b)| same_matrix(a, b))
 }
-
-/// Unknowns of a matrix that it holds so stiffly that neighbours are negligible; not those that rows carry.
-fn grounded_in(matrix: Option<&Arc<Symmetric>>, pilots: Option<&Pilots>) -> Result<Arc<[u32]>> {
-    let mut held = matrix.map_or(Ok(Vec::new()), |k| grounded((&**k).into()))?;
-    if let Some(pilots) = pilots {
-        held.retain(|j| pilots.carried.binary_search(&(*j as usize)).is_err());
-    }
-    Ok(held.into())
-}
-
-/// Bodies, their plans, and the bodies whose factors they use.
-type Planned<'a> = (&'a [usize], Vec<Plan>, Vec<Option<usize>>);
 
 /// A symbolic analysis that exists or will be made by the plan of this number.
 struct SharedAnalysis {

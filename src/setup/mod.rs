@@ -1,10 +1,12 @@
 //! Data computed once from a model, for any load and gap: null spaces, factors, scaled rows, dual operators.
 
 mod build;
+mod execute;
 mod factors;
 mod headroom;
 mod host;
 mod islands;
+mod lending;
 mod memory_limit;
 mod operators;
 mod plans;

@@ -34,6 +34,12 @@ impl Operators {
         sizes.map(|(size, implicit)| 1.0 + if *implicit { 0.0 } else { size.assembly() }).collect()
     }
 
+    /// Bytes of those on ranks other than 0.
+    pub fn bytes_on_others(&self, ranks: &[usize]) -> usize {
+        let of = |p: usize| self.sizes[p].bytes(self.implicit[p]);
+        (0..ranks.len()).filter(|p| ranks[*p] > 0).map(of).sum()
+    }
+
     /// Whether these options lead to the present choice.
     pub fn suit(&self, settings: &Settings) -> bool {
         options(settings) == self.options
@@ -51,7 +57,8 @@ impl Operators {
 
     /// Checks `more` bytes, in addition to factors and operators, against the limit of the host.
     pub fn check_more(&self, settings: &Settings, more: usize) -> Result<()> {
-        check_memory(settings, self.factor_bytes.saturating_add(self.bytes), more).map_err(|e| self.named(e))
+        let kept = self.factor_bytes.saturating_add(self.bytes);
+        check_memory(settings, kept, more, 0).map_err(|e| self.named(e))
     }
 }
 

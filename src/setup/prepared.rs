@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::body::{GeneralizedInverse, Pilots, Symbolic};
+use crate::body::{Asking, GeneralizedInverse, Lending, Owed, Pilots, Symbolic};
 use crate::certificate::LoadOfWhole;
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
@@ -19,6 +19,8 @@ pub struct Prepared {
     pub(super) bodies: Vec<PreparedBody>,
     pub(super) duals: Option<Duals>,
     pub work: Work,
+    /// The ranks to which bodies may be lent.
+    pub lending: Option<Lending>,
     /// How many times the dual problems have been made.
     pub made: usize,
 }
@@ -31,6 +33,8 @@ pub struct PreparedBody {
     pub inverse: Option<Arc<Inverse>>,
     /// `F_p` of the previous rows, with K+ and while there is no dual problem.
     pub operator: Option<Box<Kept>>,
+    /// The rank where its K+ was made.
+    pub rank: Option<usize>,
     /// Its carried unknowns: K+ holds them.
     pub pilots: Option<Box<Pilots>>,
     /// The last analysis of a matrix with this pattern.
@@ -115,17 +119,43 @@ impl Prepared {
 
     /// Drops data of old revisions, except data that can be reused.
     pub fn follow(&mut self, model: &SolvedModel) {
+        if self.lending.as_ref().is_some_and(|lending| lending.is_over()) {
+            self.take_back();
+        }
         if self.duals(model).is_none() {
             self.release();
         }
         self.bodies.resize_with(model.bodies.len(), PreparedBody::default);
         for (own, given) in self.bodies.iter_mut().zip(&model.bodies) {
             let now = given.revisions;
-            own.symbolic.take_if(|_| own.of.analysed != now.analysed);
+            if own.of.analysed != now.analysed {
+                (own.symbolic, own.rank) = (None, None);
+            }
             own.keys.take_if(|_| own.of.stiffness != now.stiffness);
             if own.of != now {
                 (own.inverse, own.operator, own.of) = (None, None, now);
             }
+        }
+    }
+
+    /// Other ranks serve no longer: what they kept is lost.
+    fn take_back(&mut self) {
+        let is_lost =
+            |own: &PreparedBody| own.inverse.as_ref().is_some_and(|of| of.kplus.elsewhere().is_some());
+        if self.bodies.iter().any(is_lost) {
+            self.duals = None;
+        }
+        for own in self.bodies.iter_mut().filter(|own| is_lost(own)) {
+            (own.inverse, own.operator, own.rank) = (None, None, None);
+        }
+        self.lending = None;
+    }
+
+    /// Asks other ranks about these bodies.
+    pub(super) fn ask(&self, questions: Vec<(usize, Asking)>) -> Result<Owed> {
+        match &self.lending {
+            Some(lending) if !questions.is_empty() => lending.ask(questions),
+            _ => Ok(Owed::nothing()),
         }
     }
 

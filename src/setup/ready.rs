@@ -52,8 +52,16 @@ impl Ready {
 
     /// `B_p K_p+ f_p` of every body.
     pub fn moved(&self, threads: usize, f: &ByBody) -> Result<Vec<Vec<f64>>> {
+        self.dual.moved(f, &self.solving(threads))
+    }
+
+    /// Runs solves with K+ of every body.
+    fn solving(
+        &self,
+        threads: usize,
+    ) -> impl Fn(usize, &(dyn Fn(usize) -> Result<Vec<f64>> + Sync)) -> Result<Vec<Vec<f64>>> + '_ {
         let on_caller = |p: usize| self.dual.solves_on_caller(p);
-        threads::run_apart(threads, self.dual.bodies(), on_caller, |p| self.dual.moved(p, f.on(p)))
+        move |count, task| threads::run_apart(threads, count, on_caller, task)
     }
 
     /// `sum_p |B_p u_p|`, row by row.
@@ -72,9 +80,7 @@ impl Ready {
 
     /// `K+ f`
     pub fn displacement(&self, threads: usize, f: &ByBody) -> Result<ByBody> {
-        let on_caller = |p: usize| self.dual.solves_on_caller(p);
-        let displacement = |p| self.dual.displacement(p, f.on(p));
-        let bodies = threads::run_apart(threads, self.dual.bodies(), on_caller, displacement)?;
+        let bodies = self.dual.displacements(f, &self.solving(threads))?;
         ByBody::from_each(&self.island.ranges, bodies, "a displacement")
     }
 

@@ -48,8 +48,11 @@ pub fn solve_islands<'a>(
         }
         return Ok(ends);
     }
-    let bodies = |k: usize| islands[k].island.bodies.iter().map(|&p| &model.bodies[p].body);
-    let on_caller = |k: usize| bodies(k).any(|body| body.k().is_some_and(|k| k.on_caller()));
+    let is_on_caller = |p: &usize| {
+        let of_host = model.bodies[*p].body.k().is_some_and(|k| k.on_caller());
+        of_host || prepared.inverse(model, *p).is_some_and(|of| of.kplus.elsewhere().is_some())
+    };
+    let on_caller = |k: usize| islands[k].island.bodies.iter().any(is_on_caller);
     let mut order: Vec<usize> = (0..islands.len()).collect();
     order.sort_by_key(|&k| Reverse(islands[k].dual.product_work()));
     // answers are combined in the order of the islands

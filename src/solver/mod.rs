@@ -28,6 +28,8 @@ pub use crate::mesh::ElementStorage;
 pub use crate::model::{options, Method, OptionInfo, OptionValue, PaperStep1, PaperUnits, Settings, Sizes};
 pub use crate::progress::{Listener, LogLevel, LogListener, PhaseReport, Progress, Reply};
 pub use crate::qp::StepKind;
+pub use crate::ranks::{Link, Ranks, Traffic};
+pub use crate::serving::serve;
 pub use crate::solve::{DualMethod, HostForm, Outcome, Report, RowState};
 pub use body_facts::{BodyFacts, Factors, Origin};
 pub use check::Candidate;

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::body::Lending;
 use crate::decomposition::{Connected, Decomposition};
 use crate::error::{Error, Kind, Result};
 use crate::model::{HostModel, Parts, SolvedModel, StartFrom};
@@ -12,6 +13,7 @@ use crate::model::{HostModel, Parts, SolvedModel, StartFrom};
 use crate::platform::interrupt::Clock;
 use crate::platform::memory::Headroom;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
+use crate::ranks::{Ranks, Traffic};
 use crate::setup::{Prepared, Work};
 use crate::solve::{solve_islands, DualMethod, Report};
 use crate::solver::decomposed::{answer_of_host, findings_of_host, of_host, same_bodies, solved};
@@ -38,7 +40,14 @@ pub struct Problem {
 
 impl Problem {
     pub fn new() -> Self {
-        Self::default()
+        #[cfg_attr(not(feature = "loopback"), allow(unused_mut))]
+        let mut problem = Self::default();
+        #[cfg(feature = "loopback")]
+        {
+            let ranks = crate::serving::loopback::by_environment();
+            problem.prepared.lending = ranks.map(|ranks| Lending::new(ranks, true));
+        }
+        problem
     }
 
     /// Makes null spaces, factors and dual operators that are missing or out of date.
@@ -148,6 +157,20 @@ impl Problem {
     /// The method that solves take where option `method` is not `proportioning`; without one they are refused.
     pub fn offer_method(&mut self, method: &'static dyn DualMethod) {
         self.method = Some(method);
+    }
+
+    /// Bodies of this problem may be lent to the other ranks, which serve ([`serve`](crate::solver::serve)). Before the first body.
+    pub fn lend_to(&mut self, ranks: Arc<Ranks>) -> Result<()> {
+        if !self.model.bodies.is_empty() {
+            return Err(Error::new(Kind::State, "the ranks must be given before the first body"));
+        }
+        self.prepared.lending = Some(Lending::new(ranks, false));
+        Ok(())
+    }
+
+    /// What has been exchanged with other ranks, by all problems that share their stream of messages.
+    pub fn traffic(&self) -> Traffic {
+        self.prepared.lending.as_ref().map(Lending::traffic).unwrap_or_default()
     }
 
     /// The function that receives the progress of setups and solves from now on.

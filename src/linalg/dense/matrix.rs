@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
 use crate::platform::memory::zeros;
+use crate::ranks::wire_struct;
 
 /// `rows x cols`, column-major.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -13,6 +14,8 @@ pub struct Matrix {
     pub cols: usize,
     pub data: Vec<f64>,
 }
+
+wire_struct!(Matrix { rows, cols, data });
 
 impl Matrix {
     pub fn zeros(rows: usize, cols: usize) -> Result<Self> {

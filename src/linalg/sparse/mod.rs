@@ -4,4 +4,5 @@ pub mod csr;
 pub mod gram;
 pub mod graph;
 pub mod runs;
+mod sent;
 pub mod symmetric;

@@ -6,6 +6,7 @@ mod file;
 mod friction;
 mod glue;
 mod headroom;
+mod lent;
 mod log;
 mod numbering;
 mod outcome;

@@ -11,6 +11,7 @@ use crate::linalg::cholesky::analysis::elimination::{elimination_tree, postorder
 use crate::linalg::sparse::graph::Graph;
 use crate::numbers::linalg::RELAXED;
 use crate::platform::memory::reserved;
+use crate::ranks::wire_struct;
 
 const WHAT: &str = "the pattern of a Cholesky factor";
 
@@ -26,6 +27,8 @@ pub struct Supernodes {
     /// Start of the panel of every supernode, and the end.
     panel: Vec<usize>,
 }
+
+wire_struct!(Supernodes { begin, row_ptr, row, parent, level, panel });
 
 /// One supernode.
 #[derive(Clone)]

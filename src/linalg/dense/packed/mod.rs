@@ -15,6 +15,7 @@ mod x86;
 use crate::error::Result;
 use crate::linalg::{Entries, Matrix, Operator};
 use crate::platform::memory::{filled, zeros};
+use crate::ranks::{damaged, Wire};
 
 const WHAT: &str = "an explicit dual operator";
 
@@ -44,6 +45,29 @@ pub struct Packed {
 enum Lower {
     Rows(Vec<f64>),
     Tiles(Vec<Tile>),
+}
+
+/// Sent row by row.
+impl Wire for Packed {
+    fn put(&self, to: &mut Vec<u8>) {
+        self.order.put(to);
+        (0..self.order).for_each(|i| (0..=i).for_each(|j| self.get(i, j).put(to)));
+    }
+
+    fn take(from: &mut &[u8]) -> Result<Self> {
+        let order = usize::take(from)?;
+        // the message has an entry for each of the memory
+        if from.len() / size_of::<f64>() < row(order) {
+            return Err(damaged());
+        }
+        let mut packed = Self::zeros(order)?;
+        for i in 0..order {
+            for j in 0..=i {
+                packed.add(i, j, f64::take(from)?);
+            }
+        }
+        Ok(packed)
+    }
 }
 
 impl Packed {

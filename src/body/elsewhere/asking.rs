@@ -1,0 +1,117 @@
+//! Questions about bodies on their way to other ranks, and the answers that are owed.
+
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::linalg::Csr;
+use crate::ranks::{damaged, message, value, wire_enum, wire_struct, Asked, Ranks, Request, Wire};
+
+/// Requests of this number are lists of questions about bodies; the answer is the list of answers, each perhaps an error.
+pub const ABOUT_BODIES: u32 = 1;
+
+/// What rank 0 asks about a body: a closed list. `kplus`, `form`: names of what is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Question {
+    /// `Factorise`: keep a K+. Answer: `Made`.
+    Factorise,
+    /// [`Assemble`]: keep `B K+ B'`. Answer: nothing.
+    Assemble,
+    /// [`Multiply`]. Answer: `B K+ B' x`.
+    Multiply,
+    /// [`Entries`]. Answer: the entries of `B K+ B'` in these rows and columns.
+    Entries,
+    /// [`Solve`]. Answer: `K+ x`.
+    Solve,
+}
+
+wire_enum!(Question { Factorise, Assemble, Multiply, Entries, Solve });
+
+/// `B K+ B'` is assembled if `explicit`; otherwise K+ and B are kept.
+pub struct Assemble {
+    pub kplus: u64,
+    pub form: u64,
+    pub explicit: bool,
+    pub rows: Arc<Csr>,
+}
+
+/// Not `exact`: by the factor alone, which may be rounded.
+pub struct Multiply {
+    pub form: u64,
+    pub exact: bool,
+    pub x: Vec<f64>,
+}
+
+pub struct Entries {
+    pub form: u64,
+    pub rows: Vec<usize>,
+}
+
+/// Not `exact`: by the factor alone, which may be rounded.
+pub struct Solve {
+    pub kplus: u64,
+    pub exact: bool,
+    pub x: Vec<f64>,
+}
+
+wire_struct!(Assemble { kplus, form, explicit, rows });
+wire_struct!(Multiply { form, exact, x });
+wire_struct!(Entries { form, rows });
+wire_struct!(Solve { kplus, exact, x });
+
+/// A question to one rank.
+pub struct Asking {
+    rank: usize,
+    message: Vec<u8>,
+}
+
+impl Asking {
+    pub fn new(rank: usize, question: Question, of: &impl Wire) -> Self {
+        let mut message = message(&question);
+        of.put(&mut message);
+        Self { rank, message }
+    }
+}
+
+/// The answers that ranks owe: of each rank the bodies asked about, in the order of the questions.
+pub struct Owed {
+    asked: Option<Asked>,
+    bodies: Vec<Vec<usize>>,
+}
+
+/// Asks these questions about these bodies, one request to each rank.
+pub fn ask(ranks: &Arc<Ranks>, questions: Vec<(usize, Asking)>) -> Result<Owed> {
+    let mut of_rank: Vec<(Vec<usize>, Vec<Vec<u8>>)> = (0..ranks.size).map(|_| Default::default()).collect();
+    for (body, Asking { rank, message }) in questions {
+        of_rank[rank].0.push(body);
+        of_rank[rank].1.push(message);
+    }
+    let (mut requests, mut bodies) = (Vec::new(), Vec::new());
+    for (rank, (own, mut messages)) in of_rank.into_iter().enumerate().filter(|(_, of)| !of.0.is_empty()) {
+        messages.insert(0, message(&own.len()));
+        requests.push(Request { rank, question: ABOUT_BODIES, messages });
+        bodies.push(own);
+    }
+    let asked = if requests.is_empty() { None } else { Some(ranks.ask(requests)?) };
+    Ok(Owed { asked, bodies })
+}
+
+impl Owed {
+    /// No rank owes anything.
+    pub fn nothing() -> Self {
+        Self { asked: None, bodies: Vec::new() }
+    }
+
+    /// Every body with its answer, rank after rank.
+    pub fn answers<T: Wire>(self) -> Result<Vec<(usize, Result<T>)>> {
+        let answers = self.asked.map_or(Ok(Vec::new()), Asked::answers)?;
+        let mut all = Vec::new();
+        for (bodies, answer) in self.bodies.into_iter().zip(answers) {
+            let own: Vec<Result<T>> = value(&answer?)?;
+            if own.len() != bodies.len() {
+                return Err(damaged());
+            }
+            all.extend(bodies.into_iter().zip(own));
+        }
+        Ok(all)
+    }
+}

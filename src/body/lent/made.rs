@@ -1,0 +1,112 @@
+//! What rank 0 knows of a K+ that another rank has made.
+
+use std::sync::Arc;
+
+use crate::body::elsewhere::Elsewhere;
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse};
+use crate::body::layout::Symbolic;
+use crate::body::misfit::Misfit;
+use crate::body::probe::Factor;
+use crate::body::spectrum::Doubt;
+use crate::linalg::Matrix;
+use crate::ranks::{wire_struct, Token};
+
+/// The fields of a `Factorised`, without its factor.
+pub struct Made {
+    null_space: Matrix,
+    stiffness: Vec<f64>,
+    rounding: f64,
+    error: f64,
+    fixing: Vec<usize>,
+    gap: Option<f64>,
+    softness: f64,
+    doubt: Option<Doubt>,
+    misfit: Option<Misfit>,
+    entries: usize,
+    is_rounded: bool,
+    carried: usize,
+    bytes_saved: usize,
+    /// The analysis, if it is not that of the plan.
+    symbolic: Option<Arc<Symbolic>>,
+    further_analyses: usize,
+    factorisations: usize,
+}
+
+wire_struct!(Made {
+    null_space,
+    stiffness,
+    rounding,
+    error,
+    fixing,
+    gap,
+    softness,
+    doubt,
+    misfit,
+    entries,
+    is_rounded,
+    carried,
+    bytes_saved,
+    symbolic,
+    further_analyses,
+    factorisations,
+});
+
+impl Made {
+    /// `planned`: the analysis of the plan.
+    pub fn of(made: &Factorised, planned: Option<&Arc<Symbolic>>) -> Self {
+        let own = Some(&made.symbolic).filter(|own| planned.is_none_or(|planned| !Arc::ptr_eq(own, planned)));
+        Self {
+            symbolic: own.cloned(),
+            further_analyses: made.further_analyses,
+            factorisations: made.factorisations,
+            ..Self::of_shared(&made.inverse)
+        }
+    }
+
+    /// Of a K+ with the factor of another.
+    pub fn of_shared(kplus: &GeneralizedInverse) -> Self {
+        Self {
+            null_space: kplus.null_space.clone(),
+            stiffness: kplus.stiffness.clone(),
+            rounding: kplus.rounding,
+            error: kplus.error,
+            fixing: kplus.fixing.clone(),
+            gap: kplus.gap,
+            softness: kplus.softness,
+            doubt: kplus.doubt,
+            misfit: kplus.misfit,
+            entries: kplus.entries(),
+            is_rounded: kplus.is_rounded(),
+            carried: kplus.carried_motions(),
+            bytes_saved: kplus.bytes_saved(),
+            symbolic: None,
+            further_analyses: 0,
+            factorisations: 0,
+        }
+    }
+
+    /// What stands for it on rank 0. `factor`: the name of the K+ whose factor it uses; `planned`: the analysis of the plan.
+    pub fn at(self, kplus: Arc<Token>, factor: u64, planned: &Arc<Symbolic>) -> Factorised {
+        let Self { entries, is_rounded, carried, bytes_saved, .. } = self;
+        let elsewhere = Elsewhere { kplus, factor, entries, is_rounded, carried, bytes_saved };
+        Factorised {
+            inverse: GeneralizedInverse {
+                null_space: self.null_space,
+                stiffness: self.stiffness,
+                rounding: self.rounding,
+                error: self.error,
+                fixing: self.fixing,
+                gap: self.gap,
+                softness: self.softness,
+                doubt: self.doubt,
+                misfit: self.misfit,
+                factor: Factor::Elsewhere(elsewhere),
+                carried: None,
+                near: None,
+            },
+            symbolic: self.symbolic.unwrap_or_else(|| Arc::clone(planned)),
+            further_analyses: self.further_analyses,
+            factorisations: self.factorisations,
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! Ranks that serve on threads of this process: for tests.
+
+use std::sync::Arc;
+
+use crate::body::Bodies;
+use crate::error::Result;
+use crate::ranks::loopback::linked;
+use crate::ranks::{Asking, Ranks};
+use crate::serving::{answer, answer_all};
+
+/// Rank 0 of `size` ranks, whose others serve until it is dropped. At the end of each its bodies go to `ended`.
+pub fn on_threads(size: usize, ended: impl Fn(&Bodies) + Clone + Send + 'static) -> Arc<Ranks> {
+    let (leader, others) = linked(size);
+    for ranks in others {
+        let ended = ended.clone();
+        std::thread::spawn(move || {
+            let mut bodies = Bodies::default();
+            let served = answer_all(&ranks, &mut bodies, &mut alone);
+            drop(served);
+            ended(&bodies);
+        });
+    }
+    leader
+}
+
+fn alone(asking: &Asking, bodies: &Bodies) -> Result<Vec<u8>> {
+    answer(bodies, asking, 1)
+}
+
+/// As many ranks as variable RANKS says. A line for each is added to file RANKS_LOG: how many questions of each kind it has answered.
+pub fn by_environment() -> Option<Arc<Ranks>> {
+    use std::io::Write;
+
+    let size = std::env::var("RANKS").ok()?.parse().ok().filter(|size| *size > 1)?;
+    Some(on_threads(size, |bodies| {
+        let Ok(path) = std::env::var("RANKS_LOG") else { return };
+        let opened = std::fs::OpenOptions::new().create(true).append(true).open(path);
+        let counts: Vec<String> = bodies.asked().iter().map(u64::to_string).collect();
+        // one write: lines of several processes do not mix
+        opened.and_then(|mut file| file.write_all(format!("{}\n", counts.join(" ")).as_bytes())).ok();
+    }))
+}

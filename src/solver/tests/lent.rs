@@ -1,0 +1,354 @@
+//! Bodies lent to other ranks: bits, what is kept there and for how long, and failures.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+
+use crate::body::{Bodies, Lending};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::{Entries, Matrix};
+use crate::ranks::loopback::{linked, linked_by};
+use crate::ranks::{Link, Ranks};
+use crate::serving::{answer, answer_all};
+use crate::solver::{FrictionInput, Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
+
+/// Unknowns of a chain.
+const N: usize = 5;
+
+/// Chains in a row, of springs `stiffness[p]`, the first held; gaps between neighbours, and each pushed to the first.
+fn chains(stiffness: &[f64], lending: Option<Lending>) -> Problem {
+    let mut problem = Problem::new();
+    problem.prepared.lending = lending;
+    for (p, &k) in stiffness.iter().enumerate() {
+        let body = problem.add_body(N).unwrap();
+        set(&mut problem, body, k);
+        let mut f = [0.0; N];
+        (f[N - 1], f[1]) = (-1.0 - p as f64 / 8.0, 0.25);
+        problem.set_load(body, &f).unwrap();
+    }
+    for p in 1..stiffness.len() {
+        // a unit step from the end of one to the begin of the next
+        let (body, dof) = ([p as i64 - 1, p as i64], [N as i64 - 1, 0]);
+        let rows =
+            RowsInput { ptr: &[0, 2], body: Some(&body), dof: &dof, val: &[1.0, -1.0], rhs: Some(&[0.1]) };
+        problem.add_rows(RowKind::Inequality, rows).unwrap();
+    }
+    problem
+}
+
+fn set(problem: &mut Problem, body: usize, k: f64) {
+    let ground = if body == 0 { k } else { 0.0 };
+    let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+    for i in 0..N {
+        if i > 0 {
+            col.push(i as i64 - 1);
+            val.push(-k);
+        }
+        col.push(i as i64);
+        let inside = if i == 0 || i + 1 == N { k } else { 2.0 * k };
+        val.push(inside + if i == 0 { ground } else { 0.0 });
+        ptr.push(col.len());
+    }
+    let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+    problem.set_stiffness(body, input).unwrap();
+}
+
+fn bits(problem: &Problem) -> Vec<u64> {
+    let (u, lambda) = (problem.displacements().unwrap(), problem.multipliers(RowKind::Inequality).unwrap());
+    u.iter().chain(lambda).map(|v| v.to_bits()).collect()
+}
+
+fn solved(problem: &mut Problem) -> Result<Vec<u64>> {
+    assert_eq!(problem.solve()?.outcome, Outcome::Solved);
+    Ok(bits(problem))
+}
+
+fn serial(stiffness: &[f64]) -> Vec<u64> {
+    solved(&mut chains(stiffness, None)).unwrap()
+}
+
+/// Two ranks that serve, and what each keeps after its last answer.
+struct Served {
+    leader: Arc<Ranks>,
+    threads: Vec<JoinHandle<()>>,
+    kept: Vec<Arc<AtomicUsize>>,
+    asked: Vec<Arc<Mutex<[u64; 5]>>>,
+}
+
+/// `instead`: of rank and number of the request, an answer in place of the right one.
+fn served(instead: impl Fn(usize, usize) -> Option<Result<Vec<u8>>> + Clone + Send + 'static) -> Served {
+    let (leader, others) = linked(3);
+    serving(leader, others, instead)
+}
+
+fn serving(
+    leader: Arc<Ranks>,
+    others: Vec<Arc<Ranks>>,
+    instead: impl Fn(usize, usize) -> Option<Result<Vec<u8>>> + Clone + Send + 'static,
+) -> Served {
+    let mut all = Served { leader, threads: Vec::new(), kept: Vec::new(), asked: Vec::new() };
+    for ranks in others {
+        let (kept, asked) = (Arc::new(AtomicUsize::new(0)), Arc::new(Mutex::new([0; 5])));
+        all.kept.push(Arc::clone(&kept));
+        all.asked.push(Arc::clone(&asked));
+        let instead = instead.clone();
+        all.threads.push(std::thread::spawn(move || {
+            let (mut bodies, mut count) = (Bodies::default(), 0);
+            let served = answer_all(&ranks, &mut bodies, &mut |asking, bodies| {
+                count += 1;
+                let answered = instead(ranks.rank, count).unwrap_or_else(|| answer(bodies, asking, 1));
+                kept.store(bodies.kept(), Ordering::Relaxed);
+                *asked.lock().unwrap() = bodies.asked();
+                answered
+            });
+            drop(served);
+            kept.store(bodies.kept(), Ordering::Relaxed);
+        }));
+    }
+    all
+}
+
+impl Served {
+    fn lending(&self) -> Option<Lending> {
+        Some(Lending::new(Arc::clone(&self.leader), true))
+    }
+
+    fn kept(&self) -> usize {
+        self.kept.iter().map(|kept| kept.load(Ordering::Relaxed)).sum()
+    }
+
+    fn asked(&self) -> [u64; 5] {
+        let each = self.asked.iter().map(|asked| *asked.lock().unwrap());
+        each.fold([0; 5], |a, b| std::array::from_fn(|k| a[k] + b[k]))
+    }
+
+    /// What is kept after the end.
+    fn end(self) -> usize {
+        self.leader.end().unwrap();
+        let Self { leader, threads, kept, .. } = self;
+        drop(leader);
+        threads.into_iter().for_each(|thread| thread.join().unwrap());
+        kept.iter().map(|kept| kept.load(Ordering::Relaxed)).sum()
+    }
+}
+
+/// The entries of F in some rows and columns.
+fn entries(problem: &Problem) -> Vec<f64> {
+    let dual = &problem.prepared.done(problem.solved()).unwrap().islands[0].dual;
+    let mut block = Matrix::zeros(3, 3).unwrap();
+    dual.add_block(&[0, 1, 3], &mut block).unwrap();
+    block.data
+}
+
+/// Friction on the first contact row, along another unknown of both chains.
+fn rub(problem: &mut Problem) {
+    let (body, dof) = ([0, 1], [2, 2]);
+    let rows = RowsInput { ptr: &[0, 2], body: Some(&body), dof: &dof, val: &[1.0, -1.0], rhs: None };
+    let nodes = FrictionInput { dim: 1, normal: &[0], rows, coefficient: Some(&[0.2]), bound: None };
+    problem.add_friction(nodes).unwrap();
+}
+
+/// Different chains, and equal ones, which share their K+ on each rank.
+#[test]
+fn lent_bodies_have_the_bits_and_the_work_of_those_that_stay() {
+    for stiffness in [vec![4.0, 3.0, 2.0, 1.0, 5.0], vec![2.0; 7]] {
+        let served = served(|_, _| None);
+        let (mut lent, mut alone) = (chains(&stiffness, served.lending()), chains(&stiffness, None));
+        for explicit in ["explicit", "implicit"] {
+            let option = format!("dual_operator={explicit}");
+            [&mut lent, &mut alone].into_iter().for_each(|problem| problem.set_text(&option).unwrap());
+            assert_eq!(solved(&mut lent), solved(&mut alone), "{explicit}");
+            assert_eq!(entries(&lent), entries(&alone), "{explicit}");
+        }
+        [&mut lent, &mut alone].into_iter().for_each(rub);
+        assert_eq!(solved(&mut lent), solved(&mut alone), "with friction");
+        assert_eq!(lent.work(), alone.work());
+        assert!(served.asked().iter().all(|count| *count > 1), "{:?}", served.asked());
+        drop(lent);
+        assert_eq!(served.end(), 0);
+    }
+}
+
+#[test]
+fn what_is_computed_once_is_neither_sent_nor_made_again() {
+    let served = served(|_, _| None);
+    let mut problem = chains(&[4.0, 3.0, 2.0, 1.0], served.lending());
+    solved(&mut problem).unwrap();
+    let [first, bytes] = [served.asked()[0], problem.traffic().bytes];
+    problem.set_load(1, &[0.0, 0.0, -2.0, 0.0, 0.0]).unwrap();
+    solved(&mut problem).unwrap();
+    let [factorise, assemble, ..] = served.asked();
+    assert_eq!((factorise, assemble), (first, first), "a new load");
+    assert!(problem.traffic().bytes - bytes < bytes);
+    set(&mut problem, 0, 8.0);
+    solved(&mut problem).unwrap();
+    assert_eq!(served.asked()[0], first + 1, "new values of one body");
+}
+
+#[test]
+fn other_ranks_keep_nothing_that_rank_0_has_dropped() {
+    let served = served(|_, _| None);
+    let stiffness = [4.0, 3.0, 2.0, 1.0];
+    let mut problem = chains(&stiffness, served.lending());
+    let mut after_two = 0;
+    for step in 0..12 {
+        (0..4).for_each(|p| set(&mut problem, p, stiffness[p] + step as f64));
+        let row = RowsInput { ptr: &[0, 1], body: Some(&[3]), dof: &[4], val: &[1.0], rhs: Some(&[9.0]) };
+        problem.add_rows(RowKind::Inequality, row).unwrap();
+        solved(&mut problem).unwrap();
+        problem.clear_rows(RowKind::Inequality);
+        for p in 1..4 {
+            let (body, dof) = ([p - 1, p], [N as i64 - 1, 0]);
+            let rows = RowsInput {
+                ptr: &[0, 2],
+                body: Some(&body),
+                dof: &dof,
+                val: &[1.0, -1.0],
+                rhs: Some(&[0.1]),
+            };
+            problem.add_rows(RowKind::Inequality, rows).unwrap();
+        }
+        solved(&mut problem).unwrap();
+        match step {
+            1 => after_two = served.kept(),
+            _ => assert!(step < 1 || served.kept() == after_two, "step {step}: {}", served.kept()),
+        }
+    }
+    // several problems at once, one dropped by another thread
+    let others: Vec<Problem> = (0..3)
+        .map(|_| {
+            let mut other = chains(&stiffness, served.lending());
+            solved(&mut other).unwrap();
+            other
+        })
+        .collect();
+    std::thread::spawn(move || drop(others)).join().unwrap();
+    solved(&mut problem).unwrap();
+    drop(problem);
+    assert!(after_two > 0 && served.end() == 0);
+}
+
+/// Each request of a solve fails in each way, on each rank; the next solve is right.
+#[test]
+fn a_failure_on_another_rank_is_that_of_the_call_and_the_next_solve_is_right() {
+    let stiffness = [4.0, 3.0, 2.0, 1.0, 5.0];
+    let right = serial(&stiffness);
+    let kinds = [Some(Kind::Memory), Some(Kind::NullSpace), Some(Kind::Indefinite), None];
+    for (kind, rank) in kinds.into_iter().flat_map(|kind| [(kind, 1), (kind, 2)]) {
+        let (mut nth, mut failures) = (1, 0);
+        loop {
+            let served = served(move |at, count| {
+                let fails = (at, count) == (rank, nth);
+                fails.then(|| {
+                    Err(Error::new(kind.expect("a panic, as the test wants"), "made to fail").dof(2))
+                })
+            });
+            let mut problem = chains(&stiffness, served.lending());
+            let ended = solved(&mut problem);
+            if let Err(error) = &ended {
+                failures += 1;
+                assert_eq!(error.kind, kind.unwrap_or(Kind::Internal), "{error}");
+                assert!(kind.is_none() || error.place.dof == Some(2), "{error}");
+                assert_eq!(solved(&mut problem).as_ref(), Ok(&right), "{kind:?} {rank} {nth}");
+            } else {
+                assert_eq!(ended.as_ref(), Ok(&right));
+            }
+            drop(problem);
+            assert_eq!(served.end(), 0);
+            if ended.is_ok() {
+                break;
+            }
+            nth += 1;
+        }
+        assert!(failures >= 3, "{kind:?}: {failures} requests");
+    }
+}
+
+/// Floating chains that are said to be held: of several the first is named, wherever they are. What could be made stays.
+#[test]
+fn the_error_is_that_of_the_first_body_and_others_are_not_made_again() {
+    for wrong in [vec![1, 2, 3], vec![2, 3], vec![3, 4], vec![2, 4], vec![4]] {
+        let served = served(|_, _| None);
+        let stiffness = [4.0, 3.0, 2.0, 1.0, 5.0];
+        let mut both = [chains(&stiffness, served.lending()), chains(&stiffness, None)];
+        let ends = both.each_mut().map(|problem| {
+            for &body in &wrong {
+                problem.set_null_space(body, N, 0, &[], N, Modes::Exact).unwrap();
+            }
+            let error = problem.setup().unwrap_err();
+            assert_eq!((error.kind, error.place.body), (Kind::NullSpace, Some(wrong[0])), "{error}");
+            for &body in &wrong {
+                problem.set_null_space(body, N, 1, &[1.0; N], N, Modes::Exact).unwrap();
+            }
+            (error, solved(problem).unwrap(), problem.work())
+        });
+        assert_eq!(ends[0], ends[1], "{wrong:?}");
+    }
+}
+
+/// A link that fails at a message.
+struct Failing {
+    link: Box<dyn Link>,
+    left: AtomicUsize,
+}
+
+impl Failing {
+    fn goes_on(&self) -> bool {
+        self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_ok()
+    }
+}
+
+impl Link for Failing {
+    fn send(&self, rank: usize, data: &[u8]) -> bool {
+        self.goes_on() && self.link.send(rank, data)
+    }
+
+    fn flush(&self) -> bool {
+        self.link.flush()
+    }
+
+    fn receive(&self, rank: usize, data: &mut [u8]) -> bool {
+        self.goes_on() && self.link.receive(rank, data)
+    }
+}
+
+#[test]
+fn after_a_broken_link_a_problem_goes_on_alone() {
+    let stiffness = [4.0, 3.0, 2.0, 1.0];
+    let right = serial(&stiffness);
+    let mut broken = 0;
+    for left in 0.. {
+        let (leader, others) = linked_by(3, |link| Box::new(Failing { link, left: AtomicUsize::new(left) }));
+        let served = serving(leader, others, |_, _| None);
+        let mut problem = chains(&stiffness, served.lending());
+        match solved(&mut problem) {
+            Ok(bits) => {
+                assert_eq!(bits, right);
+                break;
+            }
+            Err(error) => assert_eq!(error.kind, Kind::Communication, "{error}"),
+        }
+        broken += 1;
+        assert_eq!(solved(&mut problem).as_ref(), Ok(&right), "alone, after {left} messages");
+        drop(problem);
+        // the ranks that serve end when the link is gone
+        let Served { leader, threads, .. } = served;
+        drop(leader);
+        threads.into_iter().for_each(|thread| thread.join().unwrap());
+    }
+    assert!(broken > 20, "{broken} messages");
+}
+
+#[test]
+fn a_problem_goes_on_alone_when_the_others_serve_no_longer() {
+    let stiffness = [4.0, 3.0, 2.0, 1.0];
+    let served = served(|_, _| None);
+    let mut problem = chains(&stiffness, served.lending());
+    assert_eq!(solved(&mut problem), Ok(serial(&stiffness)));
+    served.end();
+    assert_eq!(solved(&mut problem), Ok(serial(&stiffness)));
+    let mut late = Problem::new();
+    late.add_body(1).unwrap();
+    let (leader, _others) = linked(2);
+    assert_eq!(late.lend_to(leader).unwrap_err().kind, Kind::State);
+}

@@ -1,0 +1,42 @@
+#!/bin/sh
+# Every Rust test of the library once more, with bodies of every problem lent to two other ranks on threads: `make ranks`. The bits must be
+# those of a run without ranks. At the end: how many K+ were made on other ranks, and how many questions of each kind were answered.
+set -eu
+log=$PWD/build/ranks.log
+mkdir -p build
+rm -f "$log"
+
+# Left out: what they count or measure is not the same with ranks.
+skip='--skip operators_that_do_not_fit_become_implicit
+--skip facts_tell_what_was_given_and_what_was_made_of_it
+--skip the_calling_thread_hears_of_every_body_with_a_fraction_that_never_falls'
+# 1: dual operators on other ranks are not in the memory of this process, from which the test takes its limit
+# 2: equal bodies on two ranks share no factor
+# 3: bodies of other ranks are not told one by one
+
+test_all() {
+    cargo test --release --locked --package feti-contact --features loopback "$@"
+}
+
+bits() {
+    BATTERY=${BITS:-1000} test_all --quiet --test batteries -- the_bits_of_many --ignored --nocapture | grep ': [0-9a-f]\{16\}$'
+}
+
+bits > build/bits_alone
+export RANKS=3 RANKS_LOG="$log"
+bits > build/bits_lent
+diff build/bits_alone build/bits_lent && echo "$(wc -l < build/bits_lent) lines of bits are those without ranks"
+# shellcheck disable=SC2086
+test_all --lib --test claims --test batteries -- $skip
+# shellcheck disable=SC2086
+BATTERY=${BATTERY:-10000} test_all --test batteries -- every_varied problems_with_friction $skip
+
+awk '{ for (i = 1; i <= NF; i++) sum[i] += $i }
+    END {
+        split("Factorise Assemble Multiply Entries Solve", name)
+        for (i = 1; i <= 5; i++) {
+            printf "%-10s %10d questions\n", name[i], sum[i]
+            if (sum[i] < 1000) { print "fewer than 1000"; bad = 1 }
+        }
+        exit bad
+    }' "$log"
