@@ -317,7 +317,7 @@ mod tests {
                 leader.ask(vec![Request { rank: 2, question: 5, messages: vec![message(&1.0)] }]).unwrap();
             assert_eq!(ask(&leader, 1.0).unwrap_err().kind, Kind::Communication);
             drop(waiting);
-            assert_eq!(value::<f64>(&ask(&leader, 1.0).unwrap().remove(1).unwrap().as_slice()).unwrap(), 4.0);
+            assert_eq!(value::<f64>(ask(&leader, 1.0).unwrap().remove(1).unwrap().as_slice()).unwrap(), 4.0);
             leader.end().unwrap();
             assert!(ask(&leader, 1.0).is_err());
             let dropped: Vec<_> = served.into_iter().map(|thread| thread.join().unwrap()).collect();
