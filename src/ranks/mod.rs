@@ -67,7 +67,7 @@ pub struct Request {
 }
 
 /// A request as the rank that serves receives it.
-pub struct Asking {
+pub struct Incoming {
     pub question: u32,
     pub message: Vec<u8>,
     /// Tokens that rank 0 has dropped before it.
@@ -151,19 +151,19 @@ impl Ranks {
     }
 
     /// The next request of rank 0.
-    pub fn next(&self) -> Result<Asking> {
+    pub fn next(&self) -> Result<Incoming> {
         let (frame, message) = self.receive(0)?;
         let mut rest = &message[..];
         let dropped = Vec::take(&mut rest)?;
         let Frame { question, seconds_left, serial, .. } = frame;
-        Ok(Asking { question, message: rest.to_vec(), dropped, seconds_left, serial })
+        Ok(Incoming { question, message: rest.to_vec(), dropped, seconds_left, serial })
     }
 
     /// The answer to a request; an error of a request is its answer.
-    pub fn reply(&self, asking: &Asking, answer: Result<Vec<u8>>) -> Result<()> {
+    pub fn reply(&self, incoming: &Incoming, answer: Result<Vec<u8>>) -> Result<()> {
         let failed = answer.is_err();
         let message = answer.unwrap_or_else(|error| wire::message(&error));
-        let frame = Frame::new(asking.serial, asking.question, failed, message.len(), f64::INFINITY);
+        let frame = Frame::new(incoming.serial, incoming.question, failed, message.len(), f64::INFINITY);
         if self.send(0, &[wire::message(&frame), message]) && self.link.flush() {
             Ok(())
         } else {
@@ -285,15 +285,15 @@ mod tests {
     fn double(ranks: &Ranks) -> Vec<u64> {
         let mut dropped = Vec::new();
         loop {
-            let asking = ranks.next().unwrap();
-            dropped.extend(&asking.dropped);
-            if asking.question == END {
-                ranks.reply(&asking, Ok(Vec::new())).unwrap();
+            let incoming = ranks.next().unwrap();
+            dropped.extend(&incoming.dropped);
+            if incoming.question == END {
+                ranks.reply(&incoming, Ok(Vec::new())).unwrap();
                 return dropped;
             }
-            let v: f64 = value(&asking.message).unwrap();
+            let v: f64 = value(&incoming.message).unwrap();
             let refused = || Error::new(Kind::Indefinite, "negative").value(v);
-            ranks.reply(&asking, if v < 0.0 { Err(refused()) } else { Ok(message(&(2.0 * v))) }).unwrap();
+            ranks.reply(&incoming, if v < 0.0 { Err(refused()) } else { Ok(message(&(2.0 * v))) }).unwrap();
         }
     }
 

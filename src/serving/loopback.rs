@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::body::Bodies;
 use crate::error::Result;
 use crate::ranks::loopback::linked;
-use crate::ranks::{Asking, Ranks};
+use crate::ranks::{Incoming, Ranks};
 use crate::serving::{answer, answer_all};
 
 /// Rank 0 of `size` ranks, whose others serve until it is dropped. At the end of each its bodies go to `ended`.
@@ -23,8 +23,8 @@ pub fn on_threads(size: usize, ended: impl Fn(&Bodies) + Clone + Send + 'static)
     leader
 }
 
-fn alone(asking: &Asking, bodies: &Bodies) -> Result<Vec<u8>> {
-    answer(bodies, asking, 1)
+fn alone(incoming: &Incoming, bodies: &Bodies) -> Result<Vec<u8>> {
+    answer(bodies, incoming, 1)
 }
 
 /// As many ranks as variable RANKS says. A line for each is added to file RANKS_LOG: how many questions of each kind it has answered.

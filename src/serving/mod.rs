@@ -11,7 +11,7 @@ use crate::body::{Bodies, ABOUT_BODIES};
 use crate::error::{Error, Kind, Result};
 use crate::platform::interrupt::Interrupt;
 use crate::platform::threads;
-use crate::ranks::{Asking, Ranks, END};
+use crate::ranks::{Incoming, Ranks, END};
 
 /// On ranks other than 0: answers rank 0, for all its problems, until rank 0 calls it too. `threads`: as option `threads`.
 pub fn serve(ranks: &Arc<Ranks>, threads: i64) -> Result<()> {
@@ -19,36 +19,36 @@ pub fn serve(ranks: &Arc<Ranks>, threads: i64) -> Result<()> {
         return ranks.end();
     }
     let (threads, mut bodies) = (threads::count(threads, usize::MAX), Bodies::default());
-    answer_all(ranks, &mut bodies, &mut |asking, bodies| answer(bodies, asking, threads))
+    answer_all(ranks, &mut bodies, &mut |incoming, bodies| answer(bodies, incoming, threads))
 }
 
 /// Answers by this function until rank 0 ends it. A panic is an error of the request.
 pub fn answer_all(
     ranks: &Ranks,
     bodies: &mut Bodies,
-    answer: &mut dyn FnMut(&Asking, &Bodies) -> Result<Vec<u8>>,
+    answer: &mut dyn FnMut(&Incoming, &Bodies) -> Result<Vec<u8>>,
 ) -> Result<()> {
     loop {
-        let asking = ranks.next()?;
-        bodies.forget(&asking.dropped);
-        if asking.question == END {
-            return ranks.reply(&asking, Ok(Vec::new()));
+        let incoming = ranks.next()?;
+        bodies.forget(&incoming.dropped);
+        if incoming.question == END {
+            return ranks.reply(&incoming, Ok(Vec::new()));
         }
-        let answered = catch_unwind(AssertUnwindSafe(|| answer(&asking, bodies)));
+        let answered = catch_unwind(AssertUnwindSafe(|| answer(&incoming, bodies)));
         let panicked = |_| Err(Error::new(Kind::Internal, "a rank that serves has panicked"));
-        ranks.reply(&asking, answered.unwrap_or_else(panicked))?;
+        ranks.reply(&incoming, answered.unwrap_or_else(panicked))?;
     }
 }
 
 /// The answer to a request, within the time that rank 0 has left.
-pub fn answer(bodies: &Bodies, asking: &Asking, threads: usize) -> Result<Vec<u8>> {
-    let (begun, limit) = (Instant::now(), asking.seconds_left);
+pub fn answer(bodies: &Bodies, incoming: &Incoming, threads: usize) -> Result<Vec<u8>> {
+    let (begun, limit) = (Instant::now(), incoming.seconds_left);
     let interrupt = match limit {
         f64::INFINITY => Interrupt::default(),
         limit => Interrupt::default().after(limit, Arc::new(move || begun.elapsed().as_secs_f64())),
     };
-    match asking.question {
-        ABOUT_BODIES => interrupt.during(|| bodies.answer(&asking.message, threads)),
+    match incoming.question {
+        ABOUT_BODIES => interrupt.during(|| bodies.answer(&incoming.message, threads)),
         _ => Err(Error::new(Kind::Internal, "a question that a rank does not know")),
     }
 }

@@ -3,9 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::sync::{Arc, Mutex};
 
-use crate::body::{
-    Elsewhere, Factorised, GeneralizedInverse, Made as MadeElsewhere, Owed, Plan, Symbolic, Token,
-};
+use crate::body::{Elsewhere, Factorised, GeneralizedInverse, Made, Owed, Plan, Symbolic, Token};
 use crate::certificate::grounded;
 use crate::error::{Error, Kind, Result};
 use crate::model::SolvedModel;
@@ -28,7 +26,7 @@ pub(super) struct Planned<'a> {
 }
 
 /// K+ by body and rank.
-pub(super) type Made = HashMap<(usize, usize), Arc<Inverse>>;
+pub(super) type OnRanks = HashMap<(usize, usize), Arc<Inverse>>;
 
 fn without_ranks() -> Error {
     Error::new(Kind::Internal, "a body was lent without a plan or a rank")
@@ -52,8 +50,8 @@ struct Lent {
 impl Lent {
     fn answers(self) -> Result<Vec<(usize, Result<OfBody>)>> {
         let Self { owed, bodies } = self;
-        let answers = owed.answers::<MadeElsewhere>()?.into_iter();
-        let made = |(k, answer): (usize, Result<MadeElsewhere>)| {
+        let answers = owed.answers::<Made>()?.into_iter();
+        let made = |(k, answer): (usize, Result<Made>)| {
             let (body, token, planned, symbolic) = &bodies[k];
             let of = answer.and_then(|answer| {
                 let symbolic = symbolic.as_ref().ok_or_else(without_ranks)?;
@@ -144,7 +142,7 @@ impl Prepared {
         Planned { pending, plans, factors, rounded }: Planned,
         (representatives, ranks): (&[usize], &[usize]),
         watch: &mut Watch,
-    ) -> Result<Made> {
+    ) -> Result<OnRanks> {
         let mut ranks_of: HashMap<usize, BTreeSet<usize>> = HashMap::new();
         for (p, rank) in ranks.iter().enumerate() {
             ranks_of.entry(representatives[p]).or_default().insert(*rank);
@@ -178,7 +176,7 @@ impl Prepared {
                     self.bodies[p].inverse = Some(inverse);
                 }
             }
-            return ended.map(|()| Made::default());
+            return ended.map(|()| OnRanks::default());
         }
         for (p, plan, q) in others {
             let there = all.get(&(q, ranks[p])).or(self.bodies[q].inverse.as_ref());
@@ -201,9 +199,9 @@ impl Prepared {
         model: &SolvedModel,
         made: Vec<OfBody>,
         ranks_of: &HashMap<usize, BTreeSet<usize>>,
-    ) -> Result<Made> {
+    ) -> Result<OnRanks> {
         let grounded = threads::run(model.threads(), made.len(), |k| self.grounded(model, made[k].body))?;
-        let mut all = Made::default();
+        let mut all = OnRanks::default();
         for (OfBody { body: p, rank, of, planned }, grounded) in made.into_iter().zip(grounded) {
             let mut bytes = planned.saturating_sub(of.inverse.bytes_saved());
             if ranks_of[&p].first() == Some(&rank) {
@@ -247,7 +245,7 @@ impl Prepared {
         let lending = self.lending.as_ref().ok_or_else(without_ranks)?;
         let (asking, token) = lending.factorising(of.rank(), plan, Some(of), false);
         let symbolic = plan.symbolic().cloned().ok_or_else(without_ranks)?;
-        let answer = self.ask(vec![(0, asking)])?.answers::<MadeElsewhere>()?.pop();
+        let answer = self.ask(vec![(0, asking)])?.answers::<Made>()?.pop();
         Ok(answer.ok_or_else(without_ranks)?.1?.at(token, of.factor, &symbolic).inverse)
     }
 }

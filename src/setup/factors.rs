@@ -16,7 +16,7 @@ use crate::model::SolvedModel;
 use crate::numbers::setup::ANALYSED;
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
-use crate::setup::execute::{Made, Planned};
+use crate::setup::execute::{OnRanks, Planned};
 use crate::setup::memory_limit::check_memory;
 use crate::setup::operators::Operators;
 use crate::setup::plans::{plans, weights};
@@ -195,7 +195,7 @@ impl Prepared {
     }
 
     /// Gives every body the K+ of the body that represents it: what has been `made` on its rank, or was there.
-    fn share(&mut self, representatives: &[usize], ranks: &[usize], made: Made) {
+    fn share(&mut self, representatives: &[usize], ranks: &[usize], made: OnRanks) {
         for (p, &representative) in representatives.iter().enumerate() {
             if let Some(inverse) = made.get(&(representative, ranks[p])) {
                 self.bodies[p].inverse = Some(Arc::clone(inverse));

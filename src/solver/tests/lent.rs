@@ -94,9 +94,9 @@ fn serving(
         let instead = instead.clone();
         all.threads.push(std::thread::spawn(move || {
             let (mut bodies, mut count) = (Bodies::default(), 0);
-            let served = answer_all(&ranks, &mut bodies, &mut |asking, bodies| {
+            let served = answer_all(&ranks, &mut bodies, &mut |incoming, bodies| {
                 count += 1;
-                let answered = instead(ranks.rank, count).unwrap_or_else(|| answer(bodies, asking, 1));
+                let answered = instead(ranks.rank, count).unwrap_or_else(|| answer(bodies, incoming, 1));
                 kept.store(bodies.kept(), Ordering::Relaxed);
                 *asked.lock().unwrap() = bodies.asked();
                 answered
