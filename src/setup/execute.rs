@@ -116,7 +116,11 @@ impl Prepared {
             let kplus = &self.bodies[p].inverse.as_ref()?.kplus;
             Some(kplus.elsewhere().map_or(0, Elsewhere::rank))
         };
-        let given = |p: usize| of_kplus(p).or_else(|| of_kplus(representatives[p])).or(self.bodies[p].rank);
+        let given = |p: usize| {
+            of_kplus(p)
+                .or_else(|| of_kplus(representatives[p]))
+                .or(self.bodies[p].rank.map(|rank| rank as usize))
+        };
         let given: Vec<Option<usize>> = (0..representatives.len()).map(given).collect();
         let assembly = operators.weights();
         let cost = |p: usize| {
@@ -130,7 +134,7 @@ impl Prepared {
         for p in (0..ranks.len()).filter(|p| owner(*p) != representatives[*p]) {
             ranks[p] = ranks[owner(p)];
         }
-        self.bodies.iter_mut().zip(&ranks).for_each(|(own, rank)| own.rank = Some(*rank));
+        self.bodies.iter_mut().zip(&ranks).for_each(|(own, rank)| own.rank = Some(*rank as u32));
         ranks
     }
 

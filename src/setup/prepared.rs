@@ -34,7 +34,7 @@ pub struct PreparedBody {
     /// `F_p` of the previous rows, with K+ and while there is no dual problem.
     pub operator: Option<Box<Kept>>,
     /// The rank where its K+ was made.
-    pub rank: Option<usize>,
+    pub rank: Option<u32>,
     /// Its carried unknowns: K+ holds them.
     pub pilots: Option<Box<Pilots>>,
     /// The last analysis of a matrix with this pattern.
