@@ -122,6 +122,9 @@
  * Validation: Check an answer of this or another program; multiply by the operators of the method.
  *     feti_check feti_check_friction feti_body_kplus feti_dual_apply feti_dual_rhs
  *
+ * Several ranks: Let other ranks of a host share the work of rank 0.
+ *     feti_communicator_set feti_serve
+ *
  * Files: Write a problem to a file and read it.
  *     feti_problem_write feti_problem_read
  *
@@ -164,7 +167,8 @@ int32_t feti_problem_create(feti_problem **p);
  * Destroys a problem with all it holds and sets the caller's handle to NULL.
  *
  * FETI_BUSY while another call on the problem runs; the problem and the handle are then unchanged. From
- * then on calls with any other copy of the handle return FETI_HANDLE.
+ * then on calls with any other copy of the handle return FETI_HANDLE. At the end the library calls
+ * feti_communicator.release, if the problem has such a table.
  */
 int32_t feti_problem_destroy(feti_problem **p);
 
@@ -1006,6 +1010,14 @@ typedef struct feti_info {
   int64_t friction_steps;
   /** Number of starts of the Newton method of friction, over all groups of bodies with friction. */
   int64_t friction_starts;
+  /** Number of ranks, 1 without feti_communicator_set. */
+  int64_t ranks;
+  /** Messages that this rank has sent and received since its first problem with this stream of messages. */
+  int64_t messages;
+  /** Bytes of these messages. */
+  int64_t message_bytes;
+  /** Seconds in which this rank has waited for other ranks. */
+  double seconds_waited;
 } feti_info;
 
 /**
@@ -1936,6 +1948,119 @@ int32_t feti_dual_apply(feti_problem *p, int64_t m, const double *x, double *y);
  */
 int32_t feti_dual_rhs(feti_problem *p, int64_t m, double *d);
 
+/* ==== Several ranks ====
+ * Let other ranks of a host share the work of rank 0. */
+
+/**
+ * A function of the host that sends bytes to another rank.
+ *
+ * It returns 0 on success and any other number to report a failure; it need not wait until the data have
+ * arrived. The data stay unchanged until feti_communicator.flush has returned; after a failure of either
+ * function they may change. What one rank sends to another arrives in the order in which it was sent.
+ *
+ * @param user  the host's own data, `user` of the table; may be NULL
+ * @param rank  the rank that receives
+ * @param bytes number of bytes, > 0
+ * @param data  (bytes) what is sent
+ */
+typedef int32_t (*feti_send_fn)(void *user, int32_t rank, int64_t bytes, const void *data);
+
+/**
+ * A function of the host that waits until all data that this rank has sent may be changed.
+ *
+ * It returns 0 on success and any other number to report a failure.
+ *
+ * @param user the host's own data, `user` of the table; may be NULL
+ */
+typedef int32_t (*feti_flush_fn)(void *user);
+
+/**
+ * A function of the host that waits for bytes from another rank.
+ *
+ * It returns 0 when exactly these bytes have arrived, and any other number to report a failure. The
+ * library does not ask for the bytes in the portions in which they were sent.
+ *
+ * @param      user  the host's own data, `user` of the table; may be NULL
+ * @param      rank  the rank that sends
+ * @param      bytes number of bytes, > 0
+ * @param[out] data  (bytes) what has arrived
+ */
+typedef int32_t (*feti_receive_fn)(void *user, int32_t rank, int64_t bytes, void *data);
+
+/**
+ * A function of the host that is called when a problem no longer uses the table that was given to it.
+ *
+ * @param user the host's own data, `user` of the table; may be NULL
+ */
+typedef void (*feti_release_fn)(void *user);
+
+/**
+ * The ranks of a host, and the functions by which it moves bytes between them. For MPI the installed
+ * source feti_mpi.c fills it.
+ */
+typedef struct feti_communicator {
+  /** Set by the caller: size of the struct in bytes. */
+  int64_t struct_size;
+  /** Number of this rank, from 0. */
+  int32_t rank;
+  /** Number of ranks. */
+  int32_t size;
+  /** Number of ranks on this machine, at least 1. They share its CPUs, unless each is bound to its own. */
+  int32_t local_size;
+  /** Zero. */
+  int32_t reserved0;
+  /**
+   * Passed to the functions unchanged. It names the stream of messages: problems whose tables have the
+   * same `user` share one.
+   */
+  void *user;
+  /** Sends bytes to another rank; like the next two it may be NULL if there is one rank only. */
+  feti_send_fn send;
+  /** Waits until all data that were sent may be changed. */
+  feti_flush_fn flush;
+  /** Waits for bytes from another rank. */
+  feti_receive_fn receive;
+  /** Called when the problem is destroyed, also after the end of MPI; may be NULL. */
+  feti_release_fn release;
+  /** NULL. */
+  void *reserved[4];
+} feti_communicator;
+
+/**
+ * Lends bodies of the problem to the other ranks, which serve (feti_serve).
+ *
+ * Rank 0 calls this function for each of its problems, before the first body; all that follows is called
+ * as without other ranks, and the answer has the same bits. The other ranks call feti_serve in its place.
+ * The library copies the table, and calls its functions in setups, solves and checks, on the thread that
+ * called the library, in the floating-point environment of that thread. It calls feti_communicator.release
+ * once when the problem is destroyed, if this call has returned FETI_OK. The functions must not exit by
+ * longjmp or an exception, nor call the library for a problem whose table has the same `user`. With one
+ * rank the call is checked, and changes nothing.
+ *
+ * FETI_STATE if the problem has a body or a table already; FETI_UNSUPPORTED on ranks other than 0, whose
+ * problems are their own: they have to call feti_serve.
+ *
+ * @param by the table, as feti_communicator describes it
+ */
+int32_t feti_communicator_set(feti_problem *p, const feti_communicator *by);
+
+/**
+ * Answers rank 0 for all of its problems (feti_communicator_set), until rank 0 calls this function, too.
+ *
+ * Every rank calls this function once. On ranks other than 0 the call returns when rank 0 makes it. The
+ * library calls the functions of the table on the thread that called it, in the floating-point environment
+ * of that thread, and does not call feti_communicator.release. On rank 0 all other ranks end their
+ * service, and the problems that have lent bodies to them can only be destroyed. With one rank the call
+ * does nothing. A rank that serves uses the CPUs of its process; if these are all CPUs of the machine, it
+ * uses its share, one of `local_size`.
+ *
+ * FETI_COMMUNICATION if a function of the table fails, or if another rank runs another build of the
+ * library.
+ *
+ * @param by the table, as feti_communicator describes it
+ */
+int32_t feti_serve(const feti_communicator *by);
+
 /* ==== Files ====
  * Write a problem to a file and read it. */
 
@@ -2098,6 +2223,8 @@ int32_t feti_problem_error(feti_problem *p, char *buf, int64_t cap, int64_t *len
 #define FETI_OVERFLOW -13
 /** Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found. */
 #define FETI_SLIDES -14
+/** Another rank cannot be reached, or runs another build of the library. */
+#define FETI_COMMUNICATION -15
 /**
  * FETI_ARGUMENT - k: argument k was refused, where the handle is argument 1. FETI_ARGUMENT itself: data of
  * an earlier call was refused.

@@ -6,7 +6,7 @@
 //! | `boundary/` | frame of every call: handles, panics, errors, arrays of the host |
 //! | `bodies/` | the functions of bodies |
 //! | `reserve` | memory for calls during which a malloc of the host fails |
-//! | `problem`, `file`, `options`, `rows`, `friction`, `solve`, `phases`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the other functions |
+//! | `problem`, `file`, `options`, `rows`, `friction`, `solve`, `phases`, `ranks`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the other functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of its
 //! arguments; if a rule contains the word NULL, the pointer may be NULL.
@@ -25,6 +25,7 @@ mod options;
 mod phases;
 mod problem;
 mod progress;
+mod ranks;
 #[cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64")))]
 mod reserve;
 mod results;
@@ -48,6 +49,7 @@ pub use options::*;
 pub use phases::*;
 pub use problem::*;
 pub use progress::*;
+pub use ranks::*;
 pub use results::*;
 pub use rows::*;
 pub use solve::*;

@@ -8,6 +8,7 @@ use crate::boundary::handle::{self, Refusal};
 use crate::boundary::{call, caught, check_text_room, copy_text, left, refuse, without_problem, Output};
 use crate::header::status::{FETI_MEMORY, FETI_OK};
 use crate::header::types::feti_problem;
+use crate::ranks;
 use feti_contact::solver::Problem;
 
 /// Bytes of a problem without bodies, its entry in the registry, and data that the library keeps from its first call on,
@@ -47,7 +48,8 @@ pub unsafe extern "C" fn feti_problem_create(p: *mut *mut feti_problem) -> i32 {
 /// Destroys a problem with all it holds and sets the caller's handle to NULL.
 ///
 /// FETI_BUSY while another call on the problem runs; the problem and the handle are then unchanged. From then on calls
-/// with any other copy of the handle return FETI_HANDLE.
+/// with any other copy of the handle return FETI_HANDLE. At the end the library calls
+/// feti_communicator.release, if the problem has such a table.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -67,6 +69,7 @@ pub unsafe extern "C" fn feti_problem_destroy(p: *mut *mut feti_problem) -> i32 
         match handle::remove(handle) {
             Err(refusal) => refuse(call, &refusal),
             Ok(problem) => {
+                let table = ranks::taken_from(handle);
                 // SAFETY: as above.
                 unsafe { p.write_unaligned(ptr::null_mut()) };
                 // for the host the problem is destroyed, even if freeing its memory fails
@@ -74,6 +77,7 @@ pub unsafe extern "C" fn feti_problem_destroy(p: *mut *mut feti_problem) -> i32 
                     drop(problem);
                     Ok(())
                 });
+                table.iter().for_each(ranks::Given::release);
                 FETI_OK
             }
         }

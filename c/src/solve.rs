@@ -4,8 +4,9 @@ use crate::boundary::{call, enter, enter_with_status, finite_input, known, same,
 use crate::friction::all_nodes;
 use crate::header::status::of_outcome;
 use crate::header::types::{feti_certificate, feti_info, feti_problem};
+use crate::ranks::count_of;
 use feti_contact::error::Result;
-use feti_contact::solver::{Candidate, Certificate, Problem, Report, Sizes};
+use feti_contact::solver::{Candidate, Certificate, Problem, Report, Sizes, Traffic};
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.
 ///
@@ -65,10 +66,11 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) -> i32 {
     // SAFETY: NULL, or `struct_size` bytes guaranteed by the caller.
     let target = (!info.is_null()).then(|| unsafe { OutStruct::new(info, "info") }).transpose();
-    let (mut sizes, mut found) = (Sizes::default(), None);
+    let (mut sizes, mut found, mut ranks) = (Sizes::default(), None, None);
     let status = enter_with_status(p, call!(feti_solve(p, info)), |problem| {
         target.as_ref().map_err(Clone::clone)?;
         sizes = problem.sizes();
+        ranks = Some((count_of(p), problem.traffic()));
         if problem.settings().fault_injection == 1 {
             panic!("fault injected on request");
         }
@@ -76,10 +78,11 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
         let solved = problem.solve();
         // if one group of bodies has no answer, others may have one
         found = problem.report().cloned();
+        ranks = Some((count_of(p), problem.traffic()));
         solved.map(|report| of_outcome(&report.outcome))
     });
     if let Ok(Some(target)) = target {
-        target.write(&info_of(status, sizes, found.as_ref()));
+        target.write(&info_of(status, sizes, found.as_ref(), ranks));
     }
     status
 }
@@ -201,7 +204,7 @@ unsafe fn answer_to_check<'a>(
 }
 
 /// The result of a solve from its report; without a report counts are zero and values NaN.
-fn info_of(status: i32, sizes: Sizes, report: Option<&Report>) -> feti_info {
+fn info_of(status: i32, sizes: Sizes, report: Option<&Report>, ranks: Option<(usize, Traffic)>) -> feti_info {
     let count = |of: fn(&Report) -> usize| report.map_or(0, |report| of(report) as i64);
     let figure = |of: fn(&Report) -> f64| report.map_or(f64::NAN, of);
     feti_info {
@@ -250,6 +253,10 @@ fn info_of(status: i32, sizes: Sizes, report: Option<&Report>) -> feti_info {
         slipping: count(|report| report.slipping),
         friction_steps: count(|report| report.newton),
         friction_starts: count(|report| report.starts),
+        ranks: ranks.map_or(0, |(count, _)| count as i64),
+        messages: ranks.map_or(0, |(_, traffic)| traffic.messages as i64),
+        message_bytes: ranks.map_or(0, |(_, traffic)| traffic.bytes as i64),
+        seconds_waited: ranks.map_or(f64::NAN, |(_, traffic)| traffic.seconds_waited),
     }
 }
 

@@ -35,7 +35,8 @@ module feti_contact
     FETI_LOG_RESULT, FETI_LOG_PHASE, FETI_LOG_STEP, FETI_OK, FETI_ITERATIONS, FETI_TIME, FETI_CANCELLED, FETI_STALLED, &
     FETI_INACCURATE, FETI_MARGINAL, FETI_MEMORY, FETI_HANDLE, FETI_BUSY, FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, &
     FETI_GAPS_CONTRADICT, FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, &
-    FETI_SLIDES, FETI_ARGUMENT, FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, FETI_CONTACT_VERSION_PATCH
+    FETI_SLIDES, FETI_COMMUNICATION, FETI_ARGUMENT, FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, &
+    FETI_CONTACT_VERSION_PATCH
   use feti_contact_bodies, only: feti_body_facts, feti_body_add => body_add, feti_body_null_space => body_null_space, &
     feti_body_no_null_space => body_no_null_space, feti_body_coordinates => body_coordinates, &
     feti_body_coordinates_flags => body_coordinates_flags, feti_body_load => body_load, feti_body_numbering => body_numbering, &
@@ -75,6 +76,7 @@ module feti_contact
     feti_option_count => option_count, feti_option_at => option_at
   use feti_contact_operators, only: feti_body_operator => body_operator
   use feti_contact_progress, only: feti_cancel => cancel, feti_on_progress => on_progress
+  use feti_contact_ranks, only: feti_communicator, feti_communicator_set => communicator_set, feti_serve => serve
   use feti_contact_log, only: feti_on_log => on_log
   implicit none
   public

@@ -644,6 +644,14 @@ module feti_contact_c
     integer(c_int64_t) :: friction_steps
     !> Number of starts of the Newton method of friction, over all groups of bodies with friction.
     integer(c_int64_t) :: friction_starts
+    !> Number of ranks, 1 without feti_communicator_set.
+    integer(c_int64_t) :: ranks
+    !> Messages that this rank has sent and received since its first problem with this stream of messages.
+    integer(c_int64_t) :: messages
+    !> Bytes of these messages.
+    integer(c_int64_t) :: message_bytes
+    !> Seconds in which this rank has waited for other ranks.
+    real(c_double) :: seconds_waited
   end type
 
   interface
@@ -1306,6 +1314,84 @@ module feti_contact_c
     end function
   end interface
 
+  ! ==== Several ranks ====
+  ! Let other ranks of a host share the work of rank 0.
+
+  !> The ranks of a host, and the functions by which it moves bytes between them. For MPI the installed source
+  !> feti_mpi.c fills it.
+  type, bind(C) :: feti_communicator
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Number of this rank, from 0.
+    integer(c_int32_t) :: rank
+    !> Number of ranks.
+    integer(c_int32_t) :: size
+    !> Number of ranks on this machine, at least 1. They share its CPUs, unless each is bound to its own.
+    integer(c_int32_t) :: local_size
+    !> Zero.
+    integer(c_int32_t) :: reserved0
+    !> Passed to the functions unchanged. It names the stream of messages: problems whose tables have the same `user`
+    !> share one.
+    type(c_ptr) :: user
+    !> Sends bytes to another rank; like the next two it may be NULL if there is one rank only.
+    type(c_funptr) :: send
+    !> Waits until all data that were sent may be changed.
+    type(c_funptr) :: flush
+    !> Waits for bytes from another rank.
+    type(c_funptr) :: receive
+    !> Called when the problem is destroyed, also after the end of MPI; may be NULL.
+    type(c_funptr) :: release
+    !> NULL.
+    type(c_ptr) :: reserved(4)
+  end type
+
+  abstract interface
+    !> A function of the host that sends bytes to another rank.
+    integer(c_int32_t) function feti_send_fn(user, rank, bytes, data) bind(C)
+      import
+      type(c_ptr), value :: user
+      integer(c_int32_t), value :: rank
+      integer(c_int64_t), value :: bytes
+      type(c_ptr), value :: data
+    end function
+
+    !> A function of the host that waits until all data that this rank has sent may be changed.
+    integer(c_int32_t) function feti_flush_fn(user) bind(C)
+      import
+      type(c_ptr), value :: user
+    end function
+
+    !> A function of the host that waits for bytes from another rank.
+    integer(c_int32_t) function feti_receive_fn(user, rank, bytes, data) bind(C)
+      import
+      type(c_ptr), value :: user
+      integer(c_int32_t), value :: rank
+      integer(c_int64_t), value :: bytes
+      type(c_ptr), value :: data
+    end function
+
+    !> A function of the host that is called when a problem no longer uses the table that was given to it.
+    subroutine feti_release_fn(user) bind(C)
+      import
+      type(c_ptr), value :: user
+    end subroutine
+  end interface
+
+  interface
+    !> Lends bodies of the problem to the other ranks, which serve (feti_serve).
+    integer(c_int32_t) function feti_communicator_set(p, by) bind(C, name="feti_communicator_set")
+      import
+      type(c_ptr), value :: p
+      type(feti_communicator), intent(in) :: by
+    end function
+
+    !> Answers rank 0 for all of its problems (feti_communicator_set), until rank 0 calls this function, too.
+    integer(c_int32_t) function feti_serve(by) bind(C, name="feti_serve")
+      import
+      type(feti_communicator), intent(in) :: by
+    end function
+  end interface
+
   ! ==== Files ====
   ! Write a problem to a file and read it.
 
@@ -1428,6 +1514,8 @@ module feti_contact_c
   integer(c_int32_t), parameter :: FETI_OVERFLOW = -13_c_int32_t
   !> Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found.
   integer(c_int32_t), parameter :: FETI_SLIDES = -14_c_int32_t
+  !> Another rank cannot be reached, or runs another build of the library.
+  integer(c_int32_t), parameter :: FETI_COMMUNICATION = -15_c_int32_t
   !> FETI_ARGUMENT - k: argument k was refused, where the handle is argument 1. FETI_ARGUMENT itself: data of an earlier
   !> call was refused.
   integer(c_int32_t), parameter :: FETI_ARGUMENT = -100_c_int32_t

@@ -647,11 +647,12 @@ recursive subroutine ftsolv(ip, ni, info, nr, rinfo, ierr)
     found%active, found%undetermined, found%steps, found%cg_steps, found%expansions, found%releases, &
     found%dual_applications, found%coarse_solves, found%factorisations, found%analyses, found%direct_solves, &
     found%finished, found%explicit_operators, found%implicit_operators, found%columns_computed, found%columns_kept, &
-    found%nodes, found%sticking, found%slipping, found%friction_steps, found%friction_starts], ni, info)
+    found%nodes, found%sticking, found%slipping, found%friction_steps, found%friction_starts, found%ranks, &
+    found%messages], ni, info)
   call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, &
     found%negative_force, found%complementarity, found%duality_gap, found%energy, found%seconds_setup, &
     found%seconds_solve, real(found%factor_bytes, c_double), real(found%operator_bytes, c_double), found%friction_cone, &
-    found%friction_work, found%friction_stick], nr, rinfo)
+    found%friction_work, found%friction_stick, real(found%message_bytes, c_double), found%seconds_waited], nr, rinfo)
 end subroutine
 
 !> Verifies an answer without tangential forces against the current problem; the answer may come from another program.

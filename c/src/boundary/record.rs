@@ -4,7 +4,8 @@ use std::mem::MaybeUninit;
 
 use crate::boundary::arrays::null;
 use crate::header::types::{
-    feti_body_facts, feti_certificate, feti_error_detail, feti_findings, feti_info, feti_option, feti_phase,
+    feti_body_facts, feti_certificate, feti_communicator, feti_error_detail, feti_findings, feti_info,
+    feti_option, feti_phase,
 };
 use feti_contact::error::{Error, Result};
 
@@ -26,6 +27,7 @@ macro_rules! first_is_struct_size {
 first_is_struct_size!(
     feti_body_facts,
     feti_certificate,
+    feti_communicator,
     feti_error_detail,
     feti_findings,
     feti_info,
@@ -68,6 +70,25 @@ impl<T: StructSize> OutStruct<T> {
             std::ptr::copy_nonoverlapping(from.add(SIZE_BYTES), to, self.bytes - SIZE_BYTES);
         }
     }
+}
+
+/// A struct that the caller has filled, which must not be shorter than ours.
+///
+/// # Safety
+/// `from` is NULL or leads to an i64 with the number of bytes that may be read from `from` on.
+pub unsafe fn read_struct<T: StructSize>(from: *const T, name: &'static str) -> Result<T> {
+    if from.is_null() {
+        return Err(null(name));
+    }
+    let ours = size_of::<T>();
+    // SAFETY: as in OutStruct::new.
+    let size = unsafe { from.cast::<i64>().read_unaligned() };
+    if !usize::try_from(size).is_ok_and(|bytes| bytes >= ours) {
+        let what = format!("struct_size is {size}, set it to the size of the struct, {ours} bytes here");
+        return Err(Error::argument(name, what));
+    }
+    // SAFETY: the caller's struct has as many bytes as it says.
+    Ok(unsafe { from.read_unaligned() })
 }
 
 /// A number of a result struct; -1 if there is none.

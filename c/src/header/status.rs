@@ -205,7 +205,7 @@ mod tests {
         }
         assert_eq!(describe(-104).0, c"FETI_ARGUMENT");
         assert_eq!(describe(-199).0, c"FETI_ARGUMENT");
-        for unknown in [7, -15, -99, -200, i32::MIN, i32::MAX] {
+        for unknown in [7, -16, -99, -200, i32::MIN, i32::MAX] {
             assert_eq!(describe(unknown).0, c"FETI_UNKNOWN");
         }
     }

@@ -3,6 +3,7 @@
 
 use std::ffi::{c_char, c_void};
 
+pub use crate::header::communicator::*;
 pub use crate::header::constants::*;
 pub use crate::header::findings::feti_findings;
 
@@ -171,6 +172,14 @@ pub struct feti_info {
     pub friction_steps: i64,
     /// Number of starts of the Newton method of friction, over all groups of bodies with friction.
     pub friction_starts: i64,
+    /// Number of ranks, 1 without feti_communicator_set.
+    pub ranks: i64,
+    /// Messages that this rank has sent and received since its first problem with this stream of messages.
+    pub messages: i64,
+    /// Bytes of these messages.
+    pub message_bytes: i64,
+    /// Seconds in which this rank has waited for other ranks.
+    pub seconds_waited: f64,
 }
 
 /// Facts on the input of a body and on the results of its last setup; facts that are not known yet are -1 or NaN.

@@ -4,7 +4,7 @@ use std::ptr::{null, null_mut};
 
 use crate::*;
 
-pub const SOURCES: [&str; 22] = [
+pub const SOURCES: [&str; 23] = [
     include_str!("../bodies/body.rs"),
     include_str!("../bodies/body_info.rs"),
     include_str!("../bodies/elements.rs"),
@@ -20,6 +20,7 @@ pub const SOURCES: [&str; 22] = [
     include_str!("../phases.rs"),
     include_str!("../problem.rs"),
     include_str!("../progress.rs"),
+    include_str!("../ranks.rs"),
     include_str!("../results.rs"),
     include_str!("../rows.rs"),
     include_str!("../solve.rs"),
@@ -40,6 +41,7 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
     }
     table! {
         feti_problem_error(null_mut(), 0, &mut 0);
+        feti_communicator_set(null());
         feti_set_f64(null(), 0.0);
         feti_set_i64(null(), 0);
         feti_set_str(null(), null());

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::c_types::{declared, prototype};
+use crate::c_types::{declared, prototype, spelled};
 use crate::doc::Doc;
 use crate::model::{Api, Callback, Struct};
 use crate::order::{self, Group};
@@ -38,12 +38,14 @@ fn write_group(out: &mut String, group: &Group) {
         write_doc(out, "", &constant.doc);
         let _ = writeln!(out, "#define {} {}", constant.name, constant.value);
     }
-    for structure in &group.structs {
-        write_struct(out, structure);
-    }
+    // functions of the host take structs, except those that are members of one
+    let (tables, structs): (Vec<_>, Vec<_>) =
+        group.structs.iter().partition(|structure| structure.has_function(&group.callbacks));
+    structs.into_iter().for_each(|structure| write_struct(out, structure));
     for callback in &group.callbacks {
         write_callback(out, callback);
     }
+    tables.into_iter().for_each(|structure| write_struct(out, structure));
     for function in &group.functions {
         out.push('\n');
         write_doc(out, "", &function.doc);
@@ -72,7 +74,8 @@ fn write_callback(out: &mut String, callback: &Callback) {
     out.push('\n');
     write_doc(out, "", &callback.doc);
     let arguments: Vec<_> = callback.arguments.iter().map(|a| declared(&a.ty, &a.name)).collect();
-    let _ = writeln!(out, "typedef int32_t (*{})({});", callback.name, arguments.join(", "));
+    let result = spelled(&callback.result);
+    let _ = writeln!(out, "typedef {result} (*{})({});", callback.name, arguments.join(", "));
 }
 
 /// A comment of one line or of several; none without a text.

@@ -22,7 +22,7 @@ pub fn spelled(ty: &Type) -> String {
 /// `const double *f`, `int64_t n`, `char function[40]`.
 pub fn declared(ty: &Type, name: &str) -> String {
     match ty {
-        Type::Array(of, n) => format!("{} {name}[{n}]", spelled(of)),
+        Type::Array(of, n) => format!("{}[{n}]", declared(of, name)),
         Type::Pointer { .. } => format!("{}{name}", spelled(ty)),
         _ => format!("{} {name}", spelled(ty)),
     }

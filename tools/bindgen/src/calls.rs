@@ -65,7 +65,9 @@ fn write_host(out: &mut String, callback: &Callback) {
     let name = format!("host_{}", callback.name);
     let arguments: Vec<_> = callback.arguments.iter().map(|a| declared(&a.ty, &a.name)).collect();
     let unused: String = callback.arguments.iter().map(|a| format!("    (void){};\n", a.name)).collect();
-    let _ = write!(out, "\nstatic int32_t {name}({})\n{{\n{unused}    return 0;\n}}\n", arguments.join(", "));
+    let (result, end) =
+        (spelled(&callback.result), if callback.result == Type::Void { "" } else { "    return 0;\n" });
+    let _ = write!(out, "\nstatic {result} {name}({})\n{{\n{unused}{end}}}\n", arguments.join(", "));
 }
 
 fn slot(api: &Api, function: &Function, argument: &Argument) -> Result<Slot, String> {

@@ -23,14 +23,17 @@ pub fn check(api: &Api) -> Result<(), String> {
     }
     for callback in &api.callbacks {
         signature(api, &callback.name, &callback.arguments)?;
-        if callback.result != Type::I32 {
-            return Err(format!("type `{}`: a callback returns i32, not {}", callback.name, callback.result));
+        if !matches!(callback.result, Type::I32 | Type::Void) {
+            return Err(format!(
+                "type `{}`: a callback returns i32 or nothing, not {}",
+                callback.name, callback.result
+            ));
         }
     }
     for structure in &api.structs {
         let fields = structure.fields.as_deref().unwrap_or(&[]);
         for field in fields {
-            field_type(&structure.name, field)?;
+            field_type(api, &structure.name, field)?;
         }
         distinct_names(
             fields.iter().map(|f| f.name.as_str()),
@@ -85,7 +88,7 @@ fn signature(api: &Api, name: &str, arguments: &[Argument]) -> Result<(), String
     distinct_names(names, &format!("function `{name}`: arguments"))
 }
 
-/// A number or a callback by value, a pointer to void, or one or two pointers to a number, a character or a declared
+/// A number or a callback by value, a pointer to void (constant for an array of bytes), or one or two pointers to a number, a character or a declared
 /// struct.
 fn is_argument_type(api: &Api, argument: &Argument) -> bool {
     let is_target = |ty: &Type| match ty {
@@ -94,18 +97,19 @@ fn is_argument_type(api: &Api, argument: &Argument) -> bool {
         _ => true,
     };
     match &argument.ty {
-        Type::Pointer { mutable: true, to } if **to == Type::Void => true,
+        Type::Pointer { mutable, to } if **to == Type::Void => *mutable || !argument.is_scalar(),
         Type::Pointer { to, .. } => is_target(to.target().unwrap_or(to)),
         ty => ty.is_number() || api.is_callback(ty),
     }
 }
 
-/// A number, an array of numbers or characters, or a pointer to one of them.
-fn field_type(owner: &str, field: &Field) -> Result<(), String> {
+/// A number, an array of numbers, characters or pointers to void, a pointer to one of them, or a callback.
+fn field_type(api: &Api, owner: &str, field: &Field) -> Result<(), String> {
+    let is_address = |ty: &Type| matches!(ty, Type::Pointer { mutable: true, to } if **to == Type::Void);
     let allowed = match &field.ty {
-        Type::Array(of, n) => *n > 0 && (of.is_number() || **of == Type::Char),
-        Type::Pointer { to, .. } => to.is_number() || **to == Type::Char,
-        ty => ty.is_number(),
+        Type::Array(of, n) => *n > 0 && (of.is_number() || **of == Type::Char || is_address(of)),
+        Type::Pointer { to, .. } => to.is_number() || **to == Type::Char || is_address(&field.ty),
+        ty => ty.is_number() || api.is_callback(ty),
     };
     if allowed {
         return Ok(());

@@ -10,6 +10,23 @@ const PAST: &str = "@ = 99";
 const NEGATIVE: [&str; 2] = ["@ = -1", "@ = INT64_MIN"];
 const WORD: &[&str] = &["@ = \"no such word\"", "@ = \"\"", "@ = \"\\xff\""];
 
+const RANKS: &[&str] = &[
+    "@_[0].struct_size = 15",
+    "@_[0].struct_size = INT64_MIN",
+    "@_[0].rank = -1",
+    "@_[0].rank = 1",
+    "@_[0].size = 0",
+    "@_[0].size = -1",
+    "@_[0].local_size = 0",
+    "@_[0].local_size = 2",
+    "@_[0].reserved0 = 1",
+    "@_[0].reserved[3] = @_",
+    "@_[0].size = 2",
+    "@_[0].size = 2, @_[0].flush = host_feti_flush_fn, @_[0].receive = host_feti_receive_fn",
+    "@_[0].size = 2, @_[0].send = host_feti_send_fn, @_[0].receive = host_feti_receive_fn",
+    "@_[0].size = 2, @_[0].send = host_feti_send_fn, @_[0].flush = host_feti_flush_fn",
+];
+
 /// Wrong values of a number that is passed by value.
 pub fn of_number(ty: &Type, role: Role, right: &str) -> Vec<String> {
     let statements: &[&str] = match role {
@@ -45,6 +62,7 @@ pub fn of_contents(role: Role, right: &str) -> Vec<String> {
         Role::Unknowns => vec![at_last("99")],
         Role::Distinct => vec!["@_[0] = -1".to_string(), at_last("@_[0]")],
         Role::Directions => vec!["@_[0] = 0".to_string(), at_last("7")],
+        Role::Ranks => made(RANKS, right),
         Role::Size => vec!["@_[0] = 0".to_string(), "@_[0] = -1".to_string()],
         Role::Word => made(WORD, right),
         Role::Options => made(&["@ = \"no such word\"", "@ = \"\\xff\""], right),

@@ -52,7 +52,7 @@ fn write_group(out: &mut String, api: &Api, group: &Group) {
         write_constant(out, constant);
     }
     for structure in &group.structs {
-        write_type(out, structure);
+        write_type(out, api, structure);
     }
     for (kind, functions) in [
         (
@@ -76,7 +76,7 @@ fn write_constant(out: &mut String, constant: &Constant) {
 }
 
 /// Handles have no Fortran type: they are `type(c_ptr)`.
-fn write_type(out: &mut String, structure: &Struct) {
+fn write_type(out: &mut String, api: &Api, structure: &Struct) {
     let Some(fields) = &structure.fields else {
         return;
     };
@@ -87,6 +87,7 @@ fn write_type(out: &mut String, structure: &Struct) {
         write_doc(out, "    ", &field.doc.summary());
         let declared = match &field.ty {
             Type::Array(of, n) => format!("{} :: {}({n})", number_kind(of), field.name),
+            ty if api.is_callback(ty) => format!("type(c_funptr) :: {}", field.name),
             ty => format!("{} :: {}", number_kind(ty), field.name),
         };
         let _ = writeln!(out, "    {declared}");
@@ -119,7 +120,11 @@ pub fn interface(api: &Api, function: &Function) -> String {
 
 fn statements(api: &Api, name: &str, arguments: &[Argument], result: &Type, binding: &str) -> String {
     let names: Vec<_> = arguments.iter().map(|a| a.name.as_str()).collect();
-    let statement = format!("{} function {name}({}) {binding}", number_kind(result), names.join(", "));
+    let kind = match result {
+        Type::Void => "subroutine".to_string(),
+        result => format!("{} function", number_kind(result)),
+    };
+    let statement = format!("{kind} {name}({}) {binding}", names.join(", "));
     let mut out = continued("    ", &statement);
     out.push_str("      import\n");
     let mut rest = arguments.iter().map(|argument| declaration(api, argument)).peekable();
@@ -129,7 +134,7 @@ fn statements(api: &Api, name: &str, arguments: &[Argument], result: &Type, bind
         }
         out.push_str(&continued("      ", &format!("{attributes} :: {names}")));
     }
-    out + "    end function\n"
+    out + if *result == Type::Void { "    end subroutine\n" } else { "    end function\n" }
 }
 
 /// A statement, continued with `&` where a line would pass the width, but not inside of inner parentheses.

@@ -83,6 +83,14 @@ pub struct Struct {
     pub doc: Doc,
 }
 
+impl Struct {
+    /// Whether one of these functions of the host is a member.
+    pub fn has_function(&self, of: &[&Callback]) -> bool {
+        let is_one = |ty: &Type| of.iter().any(|callback| *ty == Type::Named(callback.name.clone()));
+        self.fields.iter().flatten().any(|field| is_one(&field.ty))
+    }
+}
+
 #[derive(Debug)]
 pub struct Argument {
     pub name: String,

@@ -20,7 +20,7 @@ macro_rules! section {
 }
 
 #[rustfmt::skip]
-pub const SECTIONS: [Section; 20] = [
+pub const SECTIONS: [Section; 21] = [
     section!("Problem", "Create and destroy a problem, which owns all other data.", [
         feti_problem, feti_problem_create, feti_problem_destroy,
     ]),
@@ -91,6 +91,9 @@ pub const SECTIONS: [Section; 20] = [
     section!("Validation", "Check an answer of this or another program; multiply by the operators of the method.", [
         feti_certificate, feti_check, feti_check_friction, feti_body_kplus, feti_dual_apply, feti_dual_rhs,
     ]),
+    section!("Several ranks", "Let other ranks of a host share the work of rank 0.", [
+        feti_communicator, feti_send_fn, feti_flush_fn, feti_receive_fn, feti_release_fn, feti_communicator_set, feti_serve,
+    ]),
     section!("Files", "Write a problem to a file and read it.", [
         feti_problem_write, feti_problem_read,
     ]),
@@ -100,7 +103,8 @@ pub const SECTIONS: [Section; 20] = [
     section!("Statuses and version", "Names and texts of return values; the version of the library.", [
         FETI_OK, FETI_ITERATIONS, FETI_TIME, FETI_CANCELLED, FETI_STALLED, FETI_INACCURATE, FETI_MARGINAL,
         FETI_MEMORY, FETI_HANDLE, FETI_BUSY, FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, FETI_GAPS_CONTRADICT,
-        FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_SLIDES, FETI_ARGUMENT,
+        FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_SLIDES, FETI_COMMUNICATION,
+        FETI_ARGUMENT,
         feti_status_name, feti_status_text, feti_version, feti_version_number,
     ]),
 ];

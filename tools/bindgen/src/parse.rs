@@ -121,6 +121,7 @@ fn exported_function(sig: &syn::Signature, attrs: &[syn::Attribute]) -> Result<F
         syn::FnArg::Receiver(_) => Err(text(input)),
     });
     let (arguments, result, doc) = signature(&name, named, &sig.output, attrs)?;
+    let result = result.ok_or_else(|| format!("function `{name}`: result type () is not allowed"))?;
     Ok(Function { name, arguments, result, doc, source: String::new(), is_twin: false })
 }
 
@@ -174,7 +175,7 @@ fn callback(item: &syn::ItemType) -> Result<Callback, String> {
         Ok((name_of(&ident.0), &input.ty))
     });
     let (arguments, result, doc) = signature(&name, named, &pointer.output, &item.attrs)?;
-    Ok(Callback { name, arguments, result, doc })
+    Ok(Callback { name, arguments, result: result.unwrap_or(Type::Void), doc })
 }
 
 /// The function inside `Option<unsafe extern "C" fn(...) -> ...>`.
@@ -195,7 +196,7 @@ fn signature<'a>(
     named: impl Iterator<Item = Result<(String, &'a syn::Type), String>>,
     output: &syn::ReturnType,
     attrs: &[syn::Attribute],
-) -> Result<(Vec<Argument>, Type, Doc), String> {
+) -> Result<(Vec<Argument>, Option<Type>, Doc), String> {
     let mut doc = documentation(attrs).map_err(|e| format!("function `{name}`: {e}"))?;
     let mut arguments = Vec::new();
     for input in named {
@@ -207,10 +208,12 @@ fn signature<'a>(
     }
     doc.rows = arguments.iter().map(|argument| argument.row.clone()).collect();
     let result = match output {
-        syn::ReturnType::Type(_, ty) => read_type(ty).ok_or_else(|| text(ty)),
-        syn::ReturnType::Default => Err("()".to_string()),
+        syn::ReturnType::Type(_, ty) => Some(
+            read_type(ty)
+                .ok_or_else(|| format!("function `{name}`: result type {} is not allowed", text(ty)))?,
+        ),
+        syn::ReturnType::Default => None,
     };
-    let result = result.map_err(|ty| format!("function `{name}`: result type {ty} is not allowed"))?;
     Ok((arguments, result, doc))
 }
 
