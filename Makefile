@@ -15,12 +15,13 @@
 #                SWEEPS="rows cut" picks some, a number among them leaves out decks of more unknowns
 # make growth    how time grows with the number of loose or glued bodies (some minutes); DECKS="tower wall" picks some
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
+# make mpi       several ranks under Open MPI and MPICH; make mpi-short: under Open MPI alone (a minute)
 # make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html, which Chromium
 #                opens page by page without network (some minutes)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
 # make man       the manual pages alone                                make deb        Debian packages in build/deb (some minutes)
 # make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
-# bench, scaling, demo, docs and test install the Debian packages they miss (tools/setup.sh).
+# bench, scaling, demo, docs, mpi and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CARGO   ?= cargo
@@ -35,7 +36,7 @@ RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO
 STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery rungs bits ranks test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
-.PHONY: quick driver man deb
+.PHONY: quick driver man deb mpi mpi-short
 .PHONY: abi licences numbers vary packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -115,15 +116,16 @@ stage:
 	@$(MAKE) --no-print-directory install PREFIX=$(STAGE) DESTDIR= > /dev/null
 
 # ---- examples, built as a host would by hand
-EXAMPLES_C       := $(basename $(notdir $(wildcard examples_c/[0-9]*.c)))
-EXAMPLES_FORTRAN := $(basename $(notdir $(wildcard examples_fortran/[0-9]*.f90 examples_fortran/[0-9]*.f)))
+# Example 15 needs MPI: make mpi.
+EXAMPLES_C       := $(filter-out 15_%,$(basename $(notdir $(wildcard examples_c/[0-9]*.c))))
+EXAMPLES_FORTRAN := $(filter-out 15_%,$(basename $(notdir $(wildcard examples_fortran/[0-9]*.f90 examples_fortran/[0-9]*.f))))
 PROGRAMS := $(EXAMPLES_C:%=build/demo/%_c) $(EXAMPLES_FORTRAN:%=build/demo/%_fortran)
-SHARED_C := $(filter-out $(EXAMPLES_C:%=examples_c/%.c),$(wildcard examples_c/*.c))
+SHARED_C := $(filter-out examples_c/1%.c examples_c/0%.c,$(wildcard examples_c/*.c))
 # Modules before their users: interfaces, base, the parts, the whole; then the reader and the rest.
 MODULES := $(patsubst %,include/fortran/%.f90,feti_contact_c feti_contact_base)
 MODULES += $(filter-out $(MODULES) %/feti_contact.f90,$(wildcard include/fortran/*.f90)) include/fortran/feti_contact.f90
 SHARED_FORTRAN := $(MODULES) examples_fortran/case_reader.f90 \
-    $(filter-out %/case_reader.f90 $(EXAMPLES_FORTRAN:%=examples_fortran/%.f90),$(wildcard examples_fortran/*.f90))
+    $(filter-out %/case_reader.f90 examples_fortran/0% examples_fortran/1%,$(wildcard examples_fortran/*.f90))
 LINK := -L$(STAGE)/lib -lfeti_contact -Wl,-rpath,$(STAGE)/lib -lm
 
 build/demo/%_c: examples_c/%.c $(SHARED_C) $(wildcard examples_c/*.h) stage
@@ -185,6 +187,15 @@ driver: stage data
 	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data > /dev/null
 	cmake --build build/ctest --target $(NAME)
 	$$(find build/ctest -type f -name $(NAME)) build/data
+
+# Several ranks, with the MPI of the system.
+mpi: stage
+	@tools/setup.sh libopenmpi-dev openmpi-bin libmpich-dev mpich
+	sh tests/mpi/run.sh $(STAGE) $(CURDIR) build/mpi openmpi mpich
+
+mpi-short: stage
+	@tools/setup.sh libopenmpi-dev openmpi-bin
+	sh tests/mpi/run.sh $(STAGE) $(CURDIR) build/mpi openmpi
 
 # With the order of elimination by METIS 5, the library of the system.
 metis:

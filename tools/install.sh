@@ -22,6 +22,7 @@ DOCDIR=$(placed "${DOCDIR-}" "$DATADIR/doc/feti-contact")
 MANDIR=$(placed "${MANDIR-}" "$DATADIR/man")
 CMAKEDIR=$LIBDIR/cmake/feti_contact
 FORTRANDIR=$DATADIR/feti_contact/fortran
+MPIDIR=$DATADIR/feti_contact/mpi
 RELEASE=${RELEASE:-${CARGO_TARGET_DIR:-target}/${CARGO_BUILD_TARGET:+$CARGO_BUILD_TARGET/}release}
 VERSION=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # The name for the loader: 0.MINOR before 1.0, MAJOR from then on, as in build.rs.
@@ -40,6 +41,7 @@ files() {
     echo "fill|cmake/feti_contact-config-version.cmake.in|$CMAKEDIR/feti_contact-config-version.cmake"
     echo "644|cmake/feti_contact-targets.cmake|$CMAKEDIR/feti_contact-targets.cmake"
     each "$FORTRANDIR" include/fortran/*.f90 include/fortran/*.inc include/fortran/fpm.toml
+    each "$MPIDIR" mpi/*
     each "$DATADIR/feti_contact/suppressions" tools/suppressions/*
     each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE LICENSE-THIRD-PARTY
     each "$DOCDIR/docs" docs/*.md
@@ -96,7 +98,7 @@ fill() {
     esac
     sed -e "s|@VERSION@|$VERSION|g" -e "s|@SOVERSION@|$SOVERSION|g" -e "s|@PREFIX@|$origin|g" \
         -e "s|@LIBDIR@|$(below "$prefix" "$LIBDIR")|g" -e "s|@INCLUDEDIR@|$(below "$prefix" "$INCLUDEDIR")|g" \
-        -e "s|@FORTRANDIR@|$(below "$prefix" "$FORTRANDIR")|g" -e "s|@MODULES@|$(modules)|g" \
+        -e "s|@FORTRANDIR@|$(below "$prefix" "$FORTRANDIR")|g" -e "s|@MPIDIR@|$(below "$prefix" "$MPIDIR")|g" -e "s|@MODULES@|$(modules)|g" \
         -e "s|@F77@|$(f77)|g" -e 's/ *$//' "$1"
 }
 

@@ -16,6 +16,6 @@ asks "0.2 REQUIRED COMPONENTS C OPTIONAL_COMPONENTS Fortran" || { cat "$work/log
 ! asks "0.2 REQUIRED COMPONENTS C Fortran" || { echo "Fortran without the language"; exit 1; }
 says "enable_language(Fortran) before find_package"
 ! asks "0.2 REQUIRED COMPONENTS Ada" || { echo "there is no component Ada"; exit 1; }
-says "no component Ada: there are C and Fortran"
+says "no component Ada: there are C, Fortran and MPI"
 ! asks "0.9 REQUIRED" || { echo "0.9 is another interface"; exit 1; }
 says "version: 0.2"

@@ -1,4 +1,5 @@
 //! The table by which a host gives the library its way to other ranks.
+#![allow(non_camel_case_types)]
 
 use std::ffi::c_void;
 

@@ -7,7 +7,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-cat "$face"/feti_contact_f77_*.f90 | sed -n 's/^recursive subroutine \(ft[a-z0-9]*(.*)\)$/`\1`/p' | tr '[:lower:]' '[:upper:]' | sort > subroutines
+cat "$face"/feti_contact_f77_*.f90 "$face"/../mpi/feti_contact_f77_*.f90 | sed -n 's/^recursive subroutine \(ft[a-z0-9]*(.*)\)$/`\1`/p' | tr '[:lower:]' '[:upper:]' | sort > subroutines
 [ -s subroutines ] || { echo "no subroutine in the face"; exit 1; }
 grep -o '^| `FT[^`]*`' "$2" | sed 's/^| //' | sort > listed
 diff subroutines listed || { echo "subroutines (<) and the chapter (>) differ"; exit 1; }

@@ -11,6 +11,8 @@ for flags in "-O2" "-O0 -fcheck=all,no-array-temps" "-O2 -fdefault-integer-8"; d
     # shellcheck disable=SC2086 # one word per flag
     $fc -std=f2018 -Wall -Wextra -pedantic -Werror -Werror=trampolines -fimplicit-none $flags -c "$1/feti_contact_c.f90" \
         "$1/feti_contact_base.f90" "$1"/feti_contact_f77_*.f90
+    # its subroutines are called in tests/mpi
+    $fc -std=f2018 -Wall -Wextra -pedantic -Werror -fimplicit-none $flags -c "$1/../mpi/feti_contact_f77_mpi.f90" -o mpi.o
     shared=$(${NM:-nm} -A feti_contact*.o | awk '$2 ~ /^[bd]$/')
     [ -z "$shared" ] || { echo "variables that threads share: $shared"; exit 1; }
 done
@@ -46,9 +48,9 @@ program numbers
     FETI_INEQUALITY, FETI_EQUALITY, FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_EXACT, FETI_CANDIDATES, FETI_SOFT, &
     FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, &
     FETI_STEP_EXPANSION]
-  integer, parameter :: more(13) = [FTTREL, FTODBL, FTOINT, FTOCHR, FTUNKN, FTESLD, FTKTAN, FTTNEW, FTFOPE, &
+  integer, parameter :: more(14) = [FTECOM, FTTREL, FTODBL, FTOINT, FTOCHR, FTUNKN, FTESLD, FTKTAN, FTTNEW, FTFOPE, &
     FTFSTI, FTFSLI, FTFWEA, FTFUNK]
-  integer, parameter :: others(13) = [FETI_STEP_RELEASE, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, FETI_ROW_UNKNOWN, &
+  integer, parameter :: others(14) = [FETI_COMMUNICATION, FETI_STEP_RELEASE, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, FETI_ROW_UNKNOWN, &
     FETI_SLIDES, FETI_TANGENTIAL, FETI_STEP_NEWTON, &
     FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP, FETI_FRICTION_WEAK, &
     FETI_FRICTION_UNKNOWN]

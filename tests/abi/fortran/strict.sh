@@ -16,7 +16,8 @@ drivers="$2/tests/abi/fortran/support/case_problem.f90"
 
 $compiler -std=f2003 "$1/feti_contact_c.f90"
 for checks in "-O2" "-O0 -fcheck=all,no-array-temps"; do
-    for file in $face "$1/feti_contact.f90" $examples $drivers "$2"/examples_fortran/[0-9]*.f90 "$2"/tests/abi/fortran/*.f90; do
+    # example 15 needs MPI: tests/mpi
+    for file in $face "$1/feti_contact.f90" "$1/../mpi/feti_contact_mpi.f90" $examples $drivers "$2"/examples_fortran/0*.f90 "$2"/examples_fortran/1[1-4]*.f90 "$2"/tests/abi/fortran/*.f90; do
         $compiler -std=f2008 $checks "$file"
     done
     shared=$(${NM:-nm} -A feti_contact*.o | awk '$2 ~ /^[bd]$/')

@@ -20,11 +20,12 @@ AT(64, default_str)
 #undef TYPE
 
 #define TYPE feti_info
-SIZE(352) AT(0, struct_size) AT(8, status) AT(16, bodies) AT(64, undetermined) AT(72, steps) AT(112, coarse_solves)
+SIZE(384) AT(0, struct_size) AT(8, status) AT(16, bodies) AT(64, undetermined) AT(72, steps) AT(112, coarse_solves)
 AT(120, factorisations) AT(128, analyses) AT(136, worst) AT(144, equilibrium) AT(192, duality_gap) AT(200, energy)
 AT(208, seconds_setup) AT(216, seconds_solve) AT(224, direct_solves) AT(232, finished) AT(240, columns_computed)
 AT(248, columns_kept) AT(256, explicit_operators) AT(264, implicit_operators) AT(272, factor_bytes) AT(280, operator_bytes)
 AT(288, friction_cone) AT(304, friction_stick) AT(312, nodes) AT(344, friction_starts)
+AT(352, ranks) AT(360, messages) AT(376, seconds_waited)
 #undef TYPE
 
 #define TYPE feti_phase
@@ -54,6 +55,11 @@ SIZE(160) AT(0, struct_size) AT(8, unknowns) AT(40, borrowed) AT(56, null_space)
 AT(112, force_error) AT(120, soft_free) AT(128, soft_held) AT(136, softness) AT(144, softness_of_rounding) AT(152, pieces)
 #undef TYPE
 
+#define TYPE feti_communicator
+SIZE(96) AT(0, struct_size) AT(8, rank) AT(12, size) AT(16, local_size) AT(20, reserved0) AT(24, user) AT(32, send) AT(40, flush)
+AT(48, receive) AT(56, release) AT(64, reserved)
+#undef TYPE
+
 struct layout {
     const char *type;
     size_t size, last; /* bytes; last: offset of the last member */
@@ -62,12 +68,13 @@ struct layout {
 static const struct layout in_c[] = {
     {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, node)},
     {"feti_option", sizeof(feti_option), offsetof(feti_option, default_str)},
-    {"feti_info", sizeof(feti_info), offsetof(feti_info, friction_starts)},
+    {"feti_info", sizeof(feti_info), offsetof(feti_info, seconds_waited)},
     {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, friction_stick_node)},
     {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
     {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, capacity)},
     {"feti_phase", sizeof(feti_phase), offsetof(feti_phase, name)},
     {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, pieces)},
+    {"feti_communicator", sizeof(feti_communicator), offsetof(feti_communicator, reserved)},
 };
 enum { TYPES = sizeof in_c / sizeof in_c[0] };
 

@@ -1,0 +1,82 @@
+#!/bin/sh
+# run.sh PREFIX ROOT WORK MPI...: with each MPI (openmpi, mpich, as Debian names their compilers) the installed sources for MPI are
+# compiled without a warning, as they are and with messages cut at 4096 bytes; example 15 in C and Fortran, a FORTRAN 77 host and hostile
+# hosts print on 2 and 4 ranks what they print on 1. The shared library needs no MPI.
+set -eu
+prefix=$1 root=$2 work=$3
+shift 3
+[ $# -gt 0 ] || { echo "usage: run.sh PREFIX ROOT WORK MPI..." >&2; exit 2; }
+limit=60 # seconds of a run
+fail() { echo "tests/mpi: $*" >&2; exit 1; }
+
+! readelf -dW "$prefix/lib/libfeti_contact.so" | grep -i 'NEEDED.*mpi' || fail "the library needs an MPI"
+! nm -D --undefined-only "$prefix/lib/libfeti_contact.so" | grep 'MPI_' || fail "the library calls MPI"
+
+export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
+pkg() { pkg-config "$@" feti_contact; }
+shim="$(pkg --variable=mpi_sources)" folder="$(pkg --variable=mpidir)" face="$(pkg --variable=fortrandir)"
+link="$(pkg --libs) -Wl,-rpath,$(pkg --variable=libdir) -lm"
+c="$root/examples_c" fortran="$root/examples_fortran" example=15_serial_under_mpirun
+
+# run MPI RANKS PROGRAM ARGUMENT...: ranks that wait leave their CPU to others; nothing is bound; as root, too.
+run() {
+    mpi=$1 ranks=$2
+    shift 2
+    case $mpi in
+    openmpi)
+        OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout "$limit" mpirun.openmpi --oversubscribe --bind-to none \
+            --mca mpi_yield_when_idle 1 --mca btl_vader_single_copy_mechanism none -n "$ranks" "$@" ;;
+    mpich) timeout "$limit" mpirun.mpich -bind-to none -n "$ranks" "$@" ;;
+    *) fail "no such MPI: $mpi" ;;
+    esac
+}
+
+# same MPI PROGRAM ARGUMENT...: it ends well and prints the same bytes on 1, 2 and 4 ranks, and something at that; times are left out.
+same() {
+    mpi=$1
+    shift
+    for ranks in 1 2 4; do
+        run "$mpi" "$ranks" "$@" >printed 2>errors || { cat printed errors; fail "$mpi, $ranks ranks: $* ends with an error"; }
+        sed 's/ seconds [0-9.]*//' printed >"ranks$ranks"
+    done
+    [ -s ranks1 ] || fail "$mpi: $* prints nothing"
+    for ranks in 2 4; do
+        diff ranks1 "ranks$ranks" || fail "$mpi: $* prints something else on $ranks ranks"
+    done
+    echo "$mpi: $(basename "$1") ${2-} prints the same on 1, 2 and 4 ranks"
+}
+
+# built MPI FLAG...: the programs in this folder, the sources for MPI compiled with these flags.
+# shellcheck disable=SC2046,SC2086 # one word per flag
+built() {
+    cc=mpicc.$1 fc=mpifort.$1
+    shift
+    strict="-O2 -Wall -Wextra -Werror"
+    $cc -std=c99 -pedantic $strict "$@" $(pkg --cflags) -I"$folder" -c "$shim" -o shim.o
+    $cc -std=c99 $strict $(pkg --cflags) -I"$folder" -I"$c" "$c/$example.c" "$c/demo.c" shim.o -o example_c $link
+    $cc -std=c99 $strict "$@" $(pkg --cflags) -I"$folder" "$root/tests/mpi/hostile.c" -o hostile $link -lpthread
+    $fc -O2 -Wall -J. $(pkg --variable=fortransources) $(pkg --variable=mpi_fortran_sources) "$fortran/demo.f90" "$fortran/$example.f90" \
+        shim.o -o example_fortran $link
+    $fc -O2 -J. -I"$face" -c $(pkg --variable=f77sources) $(pkg --variable=mpi_f77_sources)
+    $fc -O2 -std=legacy -I"$face" "$root/tests/mpi/lends.f" feti_contact_*.o shim.o -o lends $link
+}
+
+mkdir -p "$work"
+work=$(cd "$work" && pwd)
+for mpi in "$@"; do
+    for chunk in whole 4096; do
+        place=$work/$mpi.$chunk
+        rm -rf "$place"
+        mkdir -p "$place"
+        cd "$place"
+        if [ "$chunk" = whole ]; then built "$mpi"; else built "$mpi" "-DFETI_MPI_CHUNK=$chunk"; fi
+        same "$mpi" ./example_c
+        for case in messages alive twice; do same "$mpi" ./hostile "$case"; done
+        [ "$chunk" = whole ] || continue
+        same "$mpi" ./example_fortran
+        same "$mpi" ./lends
+        for case in single freed thread outside; do same "$mpi" ./hostile "$case"; done
+    done
+    "$work/$mpi.whole/hostile" unknown >/dev/null 2>&1 && fail "hostile accepts any case"
+done
+echo "tests/mpi: all as on one rank"
