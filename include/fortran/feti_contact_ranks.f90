@@ -33,6 +33,7 @@ contains
     call finish(c_serve(sized(by)), stat, errmsg)
   end subroutine
 
+  !> The table with its size.
   recursive function sized(by)
     type(feti_communicator), intent(in) :: by
     type(feti_communicator) :: sized

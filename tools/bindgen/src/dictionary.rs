@@ -74,7 +74,7 @@ const ENTRIES: &[Entry] = &[
     ("basis", Role::Doubles, "1.0, 1.0"),
     ("body", Role::Number, "1"),
     ("bound", Role::NotNegative, "0.5"),
-    ("by", Role::Ranks, "{ .struct_size = sizeof(feti_communicator), .size = 1, .local_size = 1 }"),
+    ("by", Role::Ranks, "{ .struct_size = sizeof(feti_communicator), .size = 1, .local_size = 1, .release = host_feti_release_fn }"),
     ("cap", Role::Room, "8"),
     ("coefficient", Role::NotNegative, "0.25"),
     ("col", Role::Indices, "0, 0, 1"),
