@@ -48,6 +48,8 @@ pub const FETI_UNSUPPORTED: i32 = -12;
 pub const FETI_OVERFLOW: i32 = -13;
 /// Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found.
 pub const FETI_SLIDES: i32 = -14;
+/// Another rank cannot be reached, or runs another build of the library.
+pub const FETI_COMMUNICATION: i32 = -15;
 /// FETI_ARGUMENT - k: argument k was refused, where the handle is argument 1. FETI_ARGUMENT itself: data of an earlier
 /// call was refused.
 pub const FETI_ARGUMENT: i32 = -100;
@@ -56,7 +58,7 @@ pub const FETI_ARGUMENT: i32 = -100;
 const MOST_ARGUMENTS: i32 = 99;
 
 /// (number, name, text)
-const TABLE: [(i32, &CStr, &CStr); 22] = [
+const TABLE: [(i32, &CStr, &CStr); 23] = [
     (FETI_OK, c"FETI_OK", c"done"),
     (FETI_ITERATIONS, c"FETI_ITERATIONS", c"stopped at the limit on steps before the tolerance was met"),
     (FETI_TIME, c"FETI_TIME", c"stopped at the time limit before the tolerance was met"),
@@ -78,6 +80,7 @@ const TABLE: [(i32, &CStr, &CStr); 22] = [
     (FETI_UNSUPPORTED, c"FETI_UNSUPPORTED", c"the request is valid but not available"),
     (FETI_OVERFLOW, c"FETI_OVERFLOW", c"a number, or a product of numbers that were given, does not fit its type"),
     (FETI_SLIDES, c"FETI_SLIDES", c"bodies slide: friction holds only a part of the load, and no rest was found"),
+    (FETI_COMMUNICATION, c"FETI_COMMUNICATION", c"another rank cannot be reached, or runs another build of the library"),
     (FETI_ARGUMENT, c"FETI_ARGUMENT", c"an argument was refused: its position is FETI_ARGUMENT minus the status, 0 for data of an earlier call"),
 ];
 
@@ -97,13 +100,13 @@ pub(crate) fn of_kind(kind: Kind, arguments: &[&str]) -> (i32, i32) {
         Kind::NullSpace => FETI_NULL_SPACE,
         Kind::Indefinite => FETI_INDEFINITE,
         Kind::Overflow => FETI_OVERFLOW,
-        // no function of C gives ranks
-        Kind::Internal | Kind::Communication => FETI_INTERNAL,
+        Kind::Internal => FETI_INTERNAL,
         Kind::Unsupported => FETI_UNSUPPORTED,
         Kind::Cancelled => FETI_CANCELLED,
         Kind::TimeOver => FETI_TIME,
         Kind::Callback => FETI_CALLBACK,
         Kind::Io => FETI_IO,
+        Kind::Communication => FETI_COMMUNICATION,
     };
     (status, 0)
 }
