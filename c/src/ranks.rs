@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use crate::boundary::{call, enter, fpu, read_struct, without_problem};
+use crate::boundary::{call, enter, fpu, read_struct, without_end};
 use crate::header::types::{
     feti_communicator, feti_flush_fn, feti_problem, feti_receive_fn, feti_release_fn, feti_send_fn,
 };
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn feti_communicator_set(p: *mut feti_problem, by: *const 
 /// `by` points to `struct_size` readable bytes; its functions may be called with `user` during the call.
 #[no_mangle]
 pub unsafe extern "C" fn feti_serve(by: *const feti_communicator) -> i32 {
-    without_problem(call!(feti_serve(by)), || {
+    without_end(call!(feti_serve(by)), || {
         // SAFETY: `struct_size` bytes guaranteed by the caller.
         let table = unsafe { Table::read(by) }?;
         let Some(functions) = table.functions else { return Ok(()) };

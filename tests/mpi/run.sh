@@ -61,6 +61,25 @@ built() {
     $fc -O2 -std=legacy -I"$face" "$root/tests/mpi/lends.f" feti_contact_*.o shim.o -o lends $link
 }
 
+# by_cmake MPI: component MPI of the CMake package builds example 15 in both languages, with the compilers of this MPI.
+by_cmake() {
+    cat >CMakeLists.txt <<END
+cmake_minimum_required(VERSION 3.22)
+project(host LANGUAGES C Fortran)
+find_package(feti_contact REQUIRED COMPONENTS C Fortran MPI)
+find_package(MPI REQUIRED COMPONENTS Fortran)
+add_executable(cmake_c "$c/$example.c" "$c/demo.c")
+target_link_libraries(cmake_c PRIVATE feti_contact::mpi m)
+add_executable(cmake_fortran "$fortran/demo.f90" "$fortran/$example.f90")
+target_link_libraries(cmake_fortran PRIVATE feti_contact::mpi_fortran MPI::MPI_Fortran)
+END
+    cmake -S . -B cmake -DCMAKE_PREFIX_PATH="$prefix" -DMPI_C_COMPILER="$(command -v "mpicc.$1")" \
+        -DMPI_Fortran_COMPILER="$(command -v "mpifort.$1")" >cmake.log 2>&1 && cmake --build cmake >>cmake.log 2>&1 || { cat cmake.log; exit 1; }
+    readelf -dW cmake/cmake_c | grep -q "NEEDED.*$2" || fail "CMake has not linked $1"
+    same "$1" cmake/cmake_c
+    same "$1" cmake/cmake_fortran
+}
+
 mkdir -p "$work"
 work=$(cd "$work" && pwd)
 for mpi in "$@"; do
@@ -76,6 +95,7 @@ for mpi in "$@"; do
         same "$mpi" ./example_fortran
         same "$mpi" ./lends
         for case in single freed thread outside; do same "$mpi" ./hostile "$case"; done
+        by_cmake "$mpi" "$([ "$mpi" = mpich ] && echo libmpich || echo libmpi)"
     done
     "$work/$mpi.whole/hostile" unknown >/dev/null 2>&1 && fail "hostile accepts any case"
 done

@@ -61,6 +61,11 @@ pub fn enter_with_status(
 /// Runs `work`, which needs no problem, and returns the status of the call.
 pub fn without_problem(call: Call, work: impl FnOnce() -> Result<()>) -> i32 {
     let _running = RunningCall::begin();
+    without_end(call, work)
+}
+
+/// As [`without_problem`], for a call that may last as long as the host runs: no shortage of memory lasts until its end.
+pub fn without_end(call: Call, work: impl FnOnce() -> Result<()>) -> i32 {
     fpu::in_default_environment(|| match caught(work) {
         Ok(()) => FETI_OK,
         Err(error) => Record::of_error(call, &error).publish(),
