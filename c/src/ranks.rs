@@ -62,8 +62,8 @@ pub unsafe extern "C" fn feti_communicator_set(p: *mut feti_problem, by: *const 
 ///
 /// Every rank calls this function once. On ranks other than 0 the call returns when rank 0 makes it. The library calls the
 /// functions of the table on the thread that called it, in the floating-point environment of that thread, and does not call
-/// feti_communicator.release. On rank 0 all other ranks end their service, and the problems that have lent bodies to them can
-/// only be destroyed. With one rank the call does nothing. A rank that serves uses the CPUs of its process; if these are
+/// feti_communicator.release. On rank 0 all other ranks end their service; problems that have lent bodies to them go on
+/// alone. With one rank the call does nothing. A rank that serves uses the CPUs of its process; if these are
 /// all CPUs of the machine, it uses its share, one of `local_size`.
 ///
 /// FETI_COMMUNICATION if a function of the table fails, or if another rank runs another build of the library.

@@ -243,9 +243,7 @@ fn a_table_that_cannot_be_is_refused() {
         assert_eq!((set(&p, &table), serve(&table)), (FETI_ARGUMENT - 2, FETI_ARGUMENT - 1), "{table:?}");
     }
     // SAFETY: NULL is refused.
-    assert_eq!(
-        unsafe { (feti_communicator_set(p.0, std::ptr::null()), feti_serve(std::ptr::null())) },
-        (-102, -101)
-    );
+    let of_null = unsafe { (feti_communicator_set(p.0, std::ptr::null()), feti_serve(std::ptr::null())) };
+    assert_eq!(of_null, (-102, -101));
     assert_eq!((end.released.load(Relaxed), end.calls()), (0, [0, 0, 0]));
 }
