@@ -133,7 +133,7 @@ static void messages(void)
         for (size_t k = 0; k < sizeof bytes / sizeof bytes[0]; k++) {
             const int64_t n = bytes[k];
             if (rank == 0) {
-                for (int64_t i = 0; i < n; i++) given[i] = (unsigned char)(i * 31 + r);
+                for (int64_t i = 0; i < n; i++) given[i] = (unsigned char)(i * 31 + i / 256 * 7 + r);
                 CHECK(by.send(by.user, r, n / 2 + 1, given) == 0 && (n < 2 || by.send(by.user, r, n - n / 2 - 1, given + n / 2 + 1) == 0));
                 CHECK(by.flush(by.user) == 0 && by.receive(by.user, r, n, taken) == 0 && memcmp(given, taken, (size_t)n) == 0);
             } else if (rank == r) {
