@@ -13,7 +13,7 @@ make_it install PREFIX=/opt/feti
 cd "$stage/opt/feti"
 has lib/libfeti_contact.so lib/libfeti_contact.a include/feti_contact.h lib/pkgconfig/feti_contact.pc \
     lib/cmake/feti_contact/feti_contact-config.cmake share/feti_contact/fortran/feti_contact.f90 \
-    share/feti_contact/fortran/fpm.toml share/doc/feti-contact/LICENSE-MIT share/doc/feti-contact/LICENSE-THIRD-PARTY \
+    share/feti_contact/fortran/fpm.toml share/feti_contact/mpi/feti_mpi.c share/feti_contact/mpi/feti_contact_mpi.h share/doc/feti-contact/LICENSE-MIT share/doc/feti-contact/LICENSE-THIRD-PARTY \
     share/doc/feti-contact/docs/licences.md share/doc/feti-contact/examples_c/Makefile \
     share/doc/feti-contact/data/three_bodies/K1.mtx.gz
 for file in "$root"/include/fortran/*.f90 "$root"/include/fortran/*.inc; do
@@ -59,7 +59,7 @@ make_it install $folders
 has "$stage/usr/lib/x86_64-linux-gnu/libfeti_contact.so" "$stage/usr/include/feti/feti_contact.h" "$stage/usr/doc/feti/README.md"
 say() { PKG_CONFIG_PATH="$stage/usr/lib/x86_64-linux-gnu/pkgconfig" pkg-config --variable="$1" feti_contact; }
 [ "$(say libdir)" -ef "$stage/usr/lib/x86_64-linux-gnu" ] && [ "$(say includedir)" -ef "$stage/usr/include/feti" ] \
-    && [ "$(say fortrandir)" = /srv/data/feti_contact/fortran ] || { echo "pkg-config: $(say libdir) $(say includedir) $(say fortrandir)"; exit 1; }
+    && [ "$(say fortrandir)" = /srv/data/feti_contact/fortran ] && [ "$(say mpi_sources)" = /srv/data/feti_contact/mpi/feti_mpi.c ] || { echo "pkg-config: $(say libdir) $(say includedir) $(say fortrandir) $(say mpi_sources)"; exit 1; }
 grep -qF '${CMAKE_CURRENT_LIST_DIR}/../../../..' "$stage"/usr/lib/*/cmake/feti_contact/feti_contact-config.cmake \
     || { echo "the CMake package does not lead from lib/<triplet> to the prefix"; exit 1; }
 make_it uninstall $folders
