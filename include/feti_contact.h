@@ -1978,7 +1978,7 @@ typedef int32_t (*feti_flush_fn)(void *user);
  * A function of the host that waits for bytes from another rank.
  *
  * It returns 0 when exactly these bytes have arrived, and any other number to report a failure. The
- * library does not ask for the bytes in the portions in which they were sent.
+ * library asks for bytes in the portions in which they were sent.
  *
  * @param      user  the host's own data, `user` of the table; may be NULL
  * @param      rank  the rank that sends

@@ -1,6 +1,5 @@
 //! Ranks on threads of one process, linked by channels: for tests.
 
-use std::collections::VecDeque;
 use std::sync::mpsc::{channel, Receiver, Sender};
 use std::sync::{Arc, Mutex};
 
@@ -10,7 +9,7 @@ use crate::ranks::{lock, Link, Ranks};
 struct Channels {
     first: usize,
     to: Vec<Mutex<Sender<Vec<u8>>>>,
-    from: Vec<Mutex<(Receiver<Vec<u8>>, VecDeque<u8>)>>,
+    from: Vec<Mutex<Receiver<Vec<u8>>>>,
 }
 
 impl Link for Channels {
@@ -23,15 +22,12 @@ impl Link for Channels {
     }
 
     fn receive(&self, rank: usize, data: &mut [u8]) -> bool {
-        let mut from = lock(&self.from[rank - self.first]);
-        let (receiver, waiting) = &mut *from;
-        while waiting.len() < data.len() {
-            let Ok(more) = receiver.recv() else { return false };
-            waiting.extend(more);
+        let Ok(sent) = lock(&self.from[rank - self.first]).recv() else { return false };
+        let is_whole = sent.len() == data.len();
+        if is_whole {
+            data.copy_from_slice(&sent);
         }
-        let count = data.len();
-        data.iter_mut().zip(waiting.drain(..count)).for_each(|(to, byte)| *to = byte);
-        true
+        is_whole
     }
 }
 
@@ -50,8 +46,8 @@ pub fn linked_by(
     for rank in 1..size {
         let ((down, from_leader), (up, from_other)) = (channel(), channel());
         of_leader.to.push(Mutex::new(down));
-        of_leader.from.push(Mutex::new((from_other, VecDeque::new())));
-        let (to, from) = (vec![Mutex::new(up)], vec![Mutex::new((from_leader, VecDeque::new()))]);
+        of_leader.from.push(Mutex::new(from_other));
+        let (to, from) = (vec![Mutex::new(up)], vec![Mutex::new(from_leader)]);
         others.push(Ranks::new(rank, size, Box::new(Channels { first: 0, to, from })));
     }
     (Ranks::new(0, size, link(Box::new(of_leader))), others)

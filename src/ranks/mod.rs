@@ -28,7 +28,7 @@ pub trait Link: Send + Sync {
     /// All data sent may be changed after it.
     fn flush(&self) -> bool;
 
-    /// Waits for exactly these bytes.
+    /// Waits for exactly these bytes, which were sent in one portion.
     fn receive(&self, rank: usize, data: &mut [u8]) -> bool;
 }
 
@@ -123,16 +123,17 @@ impl Ranks {
         let mut asked = Asked { ranks: Arc::clone(self), waiting: Vec::new() };
         let mut sent = Vec::with_capacity(requests.len());
         for request in requests {
-            let mut messages = vec![message(&self.dropped_of(request.rank))];
-            messages.extend(request.messages);
+            let mut message = message(&self.dropped_of(request.rank));
+            request.messages.into_iter().for_each(|piece| message.extend(piece));
             let serial = self.serial.fetch_add(1, Ordering::Relaxed);
-            let bytes = messages.iter().map(Vec::len).sum();
-            messages.insert(0, message(&Frame::new(serial, request.question, false, bytes, seconds_left)));
-            sent.push((request.rank, messages));
+            let frame = Frame::new(serial, request.question, false, message.len(), seconds_left);
+            sent.push((request.rank, wire::message(&frame), message));
             asked.waiting.push((request.rank, serial));
         }
-        let is_sent = sent.iter().all(|(rank, messages)| self.send(*rank, messages));
-        if !(is_sent && self.link.flush()) {
+        let is_sent = sent.iter().all(|(rank, frame, message)| self.send(*rank, frame, message));
+        // also after a failure: what is on its way may not be freed
+        let is_flushed = self.link.flush();
+        if !(is_sent && is_flushed) {
             asked.waiting.clear();
             return Err(self.failed());
         }
@@ -164,17 +165,18 @@ impl Ranks {
         let failed = answer.is_err();
         let message = answer.unwrap_or_else(|error| wire::message(&error));
         let frame = Frame::new(incoming.serial, incoming.question, failed, message.len(), f64::INFINITY);
-        if self.send(0, &[wire::message(&frame), message]) && self.link.flush() {
+        let is_sent = self.send(0, &wire::message(&frame), &message);
+        if self.link.flush() && is_sent {
             Ok(())
         } else {
             Err(self.failed())
         }
     }
 
-    /// Sends pieces of one message.
-    fn send(&self, rank: usize, pieces: &[Vec<u8>]) -> bool {
-        self.count(pieces.iter().map(Vec::len).sum());
-        pieces.iter().filter(|piece| !piece.is_empty()).all(|piece| self.link.send(rank, piece))
+    /// Sends a message in two portions, as it is received: its frame, and what it says.
+    fn send(&self, rank: usize, frame: &[u8], message: &[u8]) -> bool {
+        self.count(frame.len() + message.len());
+        self.link.send(rank, frame) && (message.is_empty() || self.link.send(rank, message))
     }
 
     fn count(&self, bytes: usize) {

@@ -10,6 +10,7 @@ use std::time::Instant;
 use crate::body::{Bodies, ABOUT_BODIES};
 use crate::error::{Error, Kind, Result};
 use crate::platform::interrupt::Interrupt;
+use crate::platform::shortage::RunningCall;
 use crate::platform::threads;
 use crate::ranks::{Incoming, Ranks, END};
 
@@ -42,6 +43,8 @@ pub fn answer_all(
 
 /// The answer to a request, within the time that rank 0 has left.
 pub fn answer(bodies: &Bodies, incoming: &Incoming, threads: usize) -> Result<Vec<u8>> {
+    // memory that is short is short for one request
+    let _running = RunningCall::begin();
     let (begun, limit) = (Instant::now(), incoming.seconds_left);
     let interrupt = match limit {
         f64::INFINITY => Interrupt::default(),

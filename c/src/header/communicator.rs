@@ -29,8 +29,8 @@ pub type feti_flush_fn = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
 /// A function of the host that waits for bytes from another rank.
 ///
-/// It returns 0 when exactly these bytes have arrived, and any other number to report a failure. The library does not ask
-/// for the bytes in the portions in which they were sent.
+/// It returns 0 when exactly these bytes have arrived, and any other number to report a failure. The library asks
+/// for bytes in the portions in which they were sent.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
