@@ -141,16 +141,18 @@ impl BodyData<'_> {
     /// Its load, with this `(f'D~^-1 f)^1/2`, is rounding of the load of the whole: a soft part, or one with a large load, makes it
     /// none alone.
     pub fn is_noise(&self, size: f64) -> bool {
-        size <= NOISE * self.whole.size
-            && largest_load(self.load, self.grounded) <= NOISE * self.whole.largest
+        if !(self.whole.size > 0.0 && size <= NOISE * self.whole.size) {
+            return false;
+        }
+        let largest = acting(self.load, self.grounded).fold(0.0, |most: f64, (_, f)| most.max(f.abs()));
+        largest <= NOISE * self.whole.largest
     }
 }
 
-/// The largest entry of a load without grounded unknowns.
-pub fn largest_load(load: Option<&[f64]>, grounded: &[u32]) -> f64 {
-    let entries = load.unwrap_or_default().iter().enumerate();
-    let acts = entries.filter(|(i, _)| grounded.binary_search(&(*i as u32)).is_err());
-    acts.fold(0.0, |most, (_, f)| most.max(f.abs()))
+/// The entries of a load that are not 0, without grounded unknowns.
+pub fn acting<'a>(load: Option<&'a [f64]>, grounded: &'a [u32]) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let entries = load.unwrap_or_default().iter().copied().enumerate();
+    entries.filter(|(i, f)| *f != 0.0 && grounded.binary_search(&(*i as u32)).is_err())
 }
 
 /// An answer on the bodies, contact rows, equality rows of the island.

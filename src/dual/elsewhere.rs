@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::body::{Asking, FormElsewhere, Owed};
+use crate::body::{Asking, FormElsewhere};
 use crate::dual::{Dual, InParallel, Subdomain};
 use crate::error::Result;
 use crate::linalg::{Operator, Packed};
@@ -57,7 +57,7 @@ impl Dual {
             return in_parallel(self.subdomains.len(), each.own);
         };
         let questions = (0..self.subdomains.len()).filter_map(|p| Some((p, (each.asking)(p)?)));
-        let owed: Owed = first.ask(questions.collect())?;
+        let owed = first.ask(questions.collect())?;
         let here = |p: usize| match is_elsewhere(&self.subdomains[p]) {
             true => Ok(Vec::new()),
             false => (each.own)(p),

@@ -248,7 +248,7 @@ impl Dual {
             self.subdomains[p].kplus.apply(f.on(p), &mut u)?;
             Ok(of(p, u))
         };
-        let asking = |p: usize| Some(self.subdomains[p].kplus.elsewhere()?.solving(f.on(p).to_vec()));
+        let asking = |p: usize| Some(self.subdomains[p].kplus.elsewhere()?.solving(true, f.on(p).to_vec()));
         self.each(&Each { own: &own, asking: &asking, of_answer: of }, in_parallel)
     }
 

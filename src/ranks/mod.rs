@@ -153,11 +153,13 @@ impl Ranks {
 
     /// The next request of rank 0.
     pub fn next(&self) -> Result<Incoming> {
-        let (frame, message) = self.receive(0)?;
+        let (frame, mut message) = self.receive(0)?;
         let mut rest = &message[..];
         let dropped = Vec::take(&mut rest)?;
+        let begin = message.len() - rest.len();
+        message.drain(..begin);
         let Frame { question, seconds_left, serial, .. } = frame;
-        Ok(Incoming { question, message: rest.to_vec(), dropped, seconds_left, serial })
+        Ok(Incoming { question, message, dropped, seconds_left, serial })
     }
 
     /// The answer to a request; an error of a request is its answer.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::body::Pilots;
-use crate::certificate::{everywhere, largest_load, LoadOfWhole, Metric};
+use crate::certificate::{acting, everywhere, LoadOfWhole, Metric};
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual, Form};
 use crate::error::{Error, Kind, Result};
@@ -137,12 +137,12 @@ impl Prepared {
             for (&p, metric) in ready.island.bodies.iter().zip(ready.metric.each()) {
                 let grounded = self.inverse(model, p).map_or(&[][..], |inverse| &inverse.grounded);
                 let load = model.bodies[p].body.load.as_deref();
-                let held = |i: usize| grounded.binary_search(&(i as u32)).is_ok();
-                let entries = load.unwrap_or_default().iter().zip(metric).enumerate();
-                let acts = entries.filter(|(i, (f, _))| **f != 0.0 && !held(*i));
-                let own: Vec<f64> = acts.map(|(_, (f, d))| f / (d * ready.island.unit).sqrt()).collect();
-                let size = weighted_norm(&own, |_| 1.0);
-                of_parts[p] = LoadOfWhole { size, largest: largest_load(load, grounded) };
+                let (mut own, mut largest) = (Vec::new(), 0.0);
+                for (i, f) in acting(load, grounded) {
+                    own.push(f / (metric[i] * ready.island.unit).sqrt());
+                    largest = f64::max(largest, f.abs());
+                }
+                of_parts[p] = LoadOfWhole { size: weighted_norm(&own, |_| 1.0), largest };
             }
         }
         let of_host = |body: usize| match parts.only(body) {

@@ -33,8 +33,7 @@ pub struct FormElsewhere {
 impl Elsewhere {
     /// `x <- K+ x`; not `exact`: by the factor alone, which may be rounded.
     pub fn solve(&self, exact: bool, x: &mut [f64]) -> Result<()> {
-        let of = Solve { kplus: self.kplus.number, exact, x: x.to_vec() };
-        let solution: Vec<f64> = alone(&self.kplus, Asking::new(self.rank(), Question::Solve, &of))?;
+        let solution: Vec<f64> = alone(&self.kplus, self.solving(exact, x.to_vec()))?;
         if x.len() != solution.len() {
             return Err(damaged());
         }
@@ -65,9 +64,9 @@ impl Elsewhere {
         (Asking::new(self.rank(), Question::Assemble, &of), FormElsewhere { token, order, explicit })
     }
 
-    /// The question for `K+ x`.
-    pub fn solving(&self, x: Vec<f64>) -> Asking {
-        Asking::new(self.rank(), Question::Solve, &Solve { kplus: self.name(), exact: true, x })
+    /// The question for `K+ x`; not `exact`: by the factor alone.
+    pub fn solving(&self, exact: bool, x: Vec<f64>) -> Asking {
+        Asking::new(self.rank(), Question::Solve, &Solve { kplus: self.name(), exact, x })
     }
 
     /// Asks questions about several bodies.
