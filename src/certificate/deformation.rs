@@ -1,15 +1,15 @@
 //! Which part of a displacement is deformation: everything except the rigid motions that the rows leave free.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::certificate::field::Field;
+use crate::certificate::part::Measured;
 use crate::certificate::NOISE;
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, norm, norm_max, ratio};
-use crate::linalg::{Analysis, ByBody, Csr, Matrix};
+use crate::linalg::{Analysis, Csr, Matrix};
 use crate::numbers::certificate::{NEIGHBOURS, RESISTED};
 use crate::platform::interrupt;
 
@@ -18,85 +18,38 @@ const PASSES: usize = 4;
 /// `A b` is rounding if it is below this part of `|A||b|`.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// delta, length.
+/// delta where rows touch, length.
 pub(super) struct Deformation {
-    /// Deformation at each unknown.
-    pub own: ByBody,
-    /// The same where rows touch.
-    pub own_at: Vec<f64>,
-    /// Deformation where rows touch, including the neighbours of these unknowns.
+    pub own: Vec<f64>,
+    /// Including the neighbours of these unknowns.
     pub joined: Vec<f64>,
 }
 
 impl Deformation {
-    pub fn new(field: &Field) -> Result<Self> {
-        let own = own(field)?;
-        let own_at = field.data.touched.at(&own);
-        let joined = with_neighbours(field, &own, &own_at)?;
-        Ok(Self { own, own_at, joined })
+    pub fn new(field: &Field, measured: &[Measured]) -> Self {
+        let own: Vec<f64> = measured.iter().flat_map(|body| &body.deformation).copied().collect();
+        let joined = with_neighbours(field, measured, &own);
+        Self { own, joined }
     }
-}
-
-/// `|r_j| / D~_j` of grounded and carried unknowns, r the forces of the rows; `|u - R a|` of the others. What a carried unknown passes
-/// into the ground by a row of its own deforms nothing.
-fn own(field: &Field) -> Result<ByBody> {
-    let mut own = without_motions(field)?;
-    let given = |push: f64, metric: f64, u: f64| (push.abs() / field.unit / metric).min(u.abs());
-    for p in 0..field.data.bodies.len() {
-        let (push, metric, u) = (field.push.on(p), field.metric.on(p), field.answer.u.on(p));
-        let own = own.on_mut(p);
-        let grounded = field.dofs(p).filter(|j| field.grounded.on(p)[*j]);
-        grounded.for_each(|j| own[j] = given(push[j], metric[j], u[j]));
-    }
-    let (at, passed_on) = (&field.at, passed_on(field));
-    field.data.touched.change(&mut own, |own| {
-        for j in (0..own.len()).filter(|j| at.carried[*j]) {
-            let push = passed_on.get(&j).unwrap_or(&at.push[j]);
-            own[j] = given(*push, at.metric[j], at.u[j]);
-        }
-    });
-    Ok(own)
-}
-
-/// The forces of rows on carried unknowns that have rows of their own, without the forces of those.
-fn passed_on(field: &Field) -> BTreeMap<usize, f64> {
-    let mut left = BTreeMap::new();
-    if !field.at.carried.contains(&true) {
-        return left;
-    }
-    for kind in RowKind::ALL {
-        let (rows, forces) = (field.rows(kind), field.answer.forces(kind));
-        for i in (0..rows.len()).filter(|i| forces[*i] != 0.0) {
-            let mut entries = rows.matrix.row(i);
-            if let (Some((j, b)), None) = (entries.next(), entries.next()) {
-                if field.at.carried[j] {
-                    *left.entry(j).or_insert(field.at.push[j]) -= b * forces[i];
-                }
-            }
-        }
-    }
-    left
 }
 
 /// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)` where rows touch, since a single unknown may be at rest by symmetry, and for carried
 /// unknowns the same by what their rows give them, `1/2 sum_i |b_ij| sum_l |b_il| delta_l / (D~_j (sum_l b_il^2 / D~_l + C_i))`; delta_j
 /// for grounded unknowns.
-fn with_neighbours(field: &Field, own: &ByBody, own_at: &[f64]) -> Result<Vec<f64>> {
+fn with_neighbours(field: &Field, measured: &[Measured], own: &[f64]) -> Vec<f64> {
     let (touched, at) = (field.data.touched, &field.at);
-    let mut all = own_at.to_vec();
-    for (p, body) in field.data.bodies.iter().enumerate() {
-        let (mut image, mut terms) = (vec![0.0; own.on(p).len()], vec![0.0; own.on(p).len()]);
-        body.stiffness.mul_with_terms(own.on(p), &mut image, &mut terms)?;
-        for (j, dof) in touched.range(p).zip(touched.dofs(p)).filter(|(j, _)| !at.grounded[*j]) {
-            let joined = terms[dof] / field.unit / at.metric[j];
+    let mut all = own.to_vec();
+    for (p, body) in measured.iter().enumerate() {
+        for (j, terms) in touched.range(p).zip(&body.neighbours).filter(|(j, _)| !field.is_grounded(p, *j)) {
+            let joined = terms / field.unit / at.metric[j];
             all[j] = all[j].max(NEIGHBOURS * joined);
         }
     }
     if at.carried.contains(&true) {
-        let led = by_rows(field, own_at);
+        let led = by_rows(field, own);
         all.iter_mut().zip(led).for_each(|(delta, led)| *delta = delta.max(NEIGHBOURS * led));
     }
-    Ok(all)
+    all
 }
 
 /// Deformation that rows with a force pass on to carried unknowns, where rows touch, length.
@@ -117,75 +70,48 @@ fn by_rows(field: &Field, own: &[f64]) -> Vec<f64> {
     led
 }
 
-/// `|u - R a|`, length. a is the least-squares fit, in D without the grounded unknowns, of the rigid motions that
-/// satisfy the rigid equality rows between bodies, `H R a = h`; rows on one body alone are ignored. `|u|` on bodies
-/// without a null space.
-fn without_motions(field: &Field) -> Result<ByBody> {
-    let data = field.data;
-    let mut left = field.answer.u.copied("the certificate")?;
-    let mut first = Vec::with_capacity(data.bodies.len() + 1);
+/// Of every body the amplitudes of the rigid motions that the rows leave free, r, length: the least-squares fit to u, in D without the
+/// grounded unknowns, that satisfies the rigid equality rows between bodies, `H R a = h`; rows on one body alone are ignored.
+pub(super) fn free_motions(field: &Field) -> Result<Vec<Vec<f64>>> {
+    let mut first = Vec::with_capacity(field.fitted.len() + 1);
     first.push(0);
-    for (motions, _) in &field.motions {
-        first.push(first[first.len() - 1] + motions.cols);
+    for fitted in &field.fitted {
+        first.push(first[first.len() - 1] + fitted.amplitudes.len());
     }
-    let modes = first[data.bodies.len()];
-    if modes > 0 {
-        let weights = weights(field);
-        let mut amplitudes = Vec::with_capacity(modes);
-        for p in 0..data.bodies.len() {
-            amplitudes.extend(fitted(field, p).into_iter().map(|a| a * weights[p]));
-        }
-        let (joints, given) = joints(field, &first, &weights);
-        let kept = nearest(&joints, &given, amplitudes)?;
-        for p in 0..data.bodies.len() {
-            let a: Vec<f64> = kept[first[p]..first[p + 1]].iter().map(|b| b / weights[p]).collect();
-            field.motions[p].0.mul_add(-1.0, &a, left.on_mut(p));
-        }
+    if first[field.fitted.len()] == 0 {
+        return Ok(vec![Vec::new(); field.fitted.len()]);
     }
-    left.change(|v| *v = v.abs());
-    Ok(left)
+    let weights = weights(field);
+    let mut amplitudes = Vec::with_capacity(first[field.fitted.len()]);
+    for (fitted, weight) in field.fitted.iter().zip(&weights) {
+        amplitudes.extend(fitted.amplitudes.iter().map(|a| a * weight));
+    }
+    let (joints, given) = joints(field, &first, &weights);
+    let kept = nearest(&joints, &given, amplitudes)?;
+    let own = |p: usize| kept[first[p]..first[p + 1]].iter().map(|b| b / weights[p]).collect();
+    Ok((0..field.fitted.len()).map(own).collect())
 }
 
 /// `(unit_p / unit_0)^1/2`, no unit: the weight of an amplitude of body p, `|R_p a_p|_D = unit_p^1/2 |a_p|`.
 fn weights(field: &Field) -> Vec<f64> {
-    let first = field.motions.first().map_or(1.0, |(_, unit)| *unit);
-    field.motions.iter().map(|(_, unit)| (unit / first).sqrt()).collect()
-}
-
-/// `a = R'D u / unit` of body p, r, length, without grounded unknowns; a second fit of the remainder removes rounding of
-/// a long travel.
-fn fitted(field: &Field, p: usize) -> Vec<f64> {
-    let ((motions, unit), metric, u) = (&field.motions[p], field.metric.on(p), field.answer.u.on(p));
-    let mut all = vec![0.0; motions.cols];
-    if all.is_empty() {
-        return all;
-    }
-    let by = field.unit / unit;
-    let mut left = field.free(p, |j| u[j]);
-    for _ in 0..2 {
-        let weighed: Vec<f64> = left.iter().zip(metric).map(|(left, d)| by * d * left).collect();
-        let step = motions.mul_transposed(&weighed);
-        motions.mul_add(-1.0, &step, &mut left);
-        left = field.free(p, |j| left[j]);
-        axpy(1.0, &step, &mut all);
-    }
-    all
+    let first = field.fitted.first().map_or(1.0, |fitted| fitted.unit);
+    field.fitted.iter().map(|fitted| (fitted.unit / first).sqrt()).collect()
 }
 
 /// `H R`, m x (modes of all bodies), and h of the rigid equality rows that join two or more bodies, each scaled to length 1.
 fn joints(field: &Field, first: &[usize], weights: &[f64]) -> (Csr, Vec<f64>) {
     let rows = field.data.equalities;
-    let (mut joints, mut given) = (Csr::empty(first[field.data.bodies.len()]), Vec::new());
+    let (mut joints, mut given) = (Csr::empty(first[field.fitted.len()]), Vec::new());
     for i in (0..rows.len()).filter(|i| rows.compliance[*i] == 0.0) {
         if field.touched(rows, i).nth(1).is_none() {
             continue;
         }
         let mut entries = Vec::new();
         for p in field.touched(rows, i) {
-            let (touched, own) = (field.data.touched, field.data.touched.range(p));
-            let own = rows.matrix.row(i).filter(|(j, _)| own.contains(j));
-            let own: Vec<(usize, f64)> = own.map(|(j, v)| (touched.dof(j), v)).collect();
-            let resisted = resisted(&own, &field.motions[p].0).into_iter().enumerate();
+            let own = field.data.touched.range(p);
+            let inside = rows.matrix.row(i).filter(|(j, _)| own.contains(j));
+            let inside: Vec<(usize, f64)> = inside.map(|(j, v)| (j - own.start, v)).collect();
+            let resisted = resisted(&inside, &field.fitted[p].motions).into_iter().enumerate();
             entries.extend(resisted.map(|(k, v)| (first[p] + k, v / weights[p])).filter(|e| e.1 != 0.0));
         }
         let length = norm(&entries.iter().map(|(_, v)| *v).collect::<Vec<_>>());

@@ -1,9 +1,9 @@
 //! The energies of an island: the duality gap, and the functional that is minimised.
 
 use crate::certificate::field::Field;
+use crate::certificate::part::Measured;
 use crate::certificate::{share, Entry, NOISE};
 use crate::constraints::RowKind;
-use crate::linalg::twofold::Twofold;
 
 /// Sums over the island, force x length.
 #[derive(Default)]
@@ -30,19 +30,13 @@ pub(super) struct Energies {
 }
 
 impl Energies {
-    /// Adds body p, with its `K u` and `|K||u|`, n_p, force.
-    pub fn add_body(&mut self, field: &Field, p: usize, (strain, terms): (&[f64], &[f64])) {
-        let (u, push_terms) = (field.answer.u.on(p), field.push_terms.on(p));
-        let given: Vec<f64> = field.dofs(p).map(|j| field.load(p, j).abs() + push_terms[j]).collect();
-        // rounding of a long sum would be many times that of its terms
-        let strain = Twofold::dot(u, strain);
-        self.strain += strain;
-        let loads: Vec<f64> = field.dofs(p).map(|j| field.load(p, j)).collect();
-        self.work += Twofold::dot(&loads, u);
-        self.terms += u.iter().zip(terms).zip(&given).map(|((u, t), g)| u.abs() * (t + g)).sum::<f64>();
-        let size = field.led_size(p, &given);
-        self.forces += size * (size / field.unit);
-        self.acting |= size > 0.0;
+    /// Adds a body.
+    pub fn add_body(&mut self, field: &Field, body: &Measured) {
+        self.strain += body.stored;
+        self.work += body.work;
+        self.terms += body.terms;
+        self.forces += body.forces * (body.forces / field.unit);
+        self.acting |= body.forces > 0.0;
     }
 
     /// Adds the rows. A row without force does no work even if its gap is infinite: 0 x infinity counts as 0.

@@ -17,6 +17,7 @@ mod field;
 mod forces;
 mod friction;
 mod grounded;
+mod part;
 mod row;
 mod rows;
 
@@ -32,13 +33,14 @@ use crate::linalg::{ByBody, Matrix};
 pub use crate::linalg::vector::NOISE;
 pub use carried::{everywhere, led, Metric};
 use clusters::Metered;
-use deformation::Deformation;
+use deformation::{free_motions, Deformation};
 use energy::Energies;
 pub use entry::{Certificate, Entry};
 use field::Field;
-use forces::Forces;
+use forces::{Forces, Given};
 pub use grounded::grounded;
-use rows::Measured;
+use part::Shared;
+use rows::JudgedRows;
 
 /// One island in terms of the host's data.
 #[derive(Clone)]
@@ -235,14 +237,20 @@ pub enum FrictionState {
 /// The judgement of an answer. Fails if the host's products with K fail.
 pub fn certify(data: &Data, answer: Candidate) -> Result<Judgement> {
     let data = &*data.measured_by(answer);
-    let field = Field::new(data, answer)?;
-    let deformation = Deformation::new(&field)?;
+    let (field, parts) = Field::new(data, answer)?;
+    let (given, free) = (Given::new(&field), free_motions(&field)?);
+    let measured = parts.iter().zip(free).enumerate().map(|(p, (part, free))| {
+        part.measured(&Shared { free, limit: data.limit, idle: given.nothing(&field, p) })
+    });
+    let measured = measured.collect::<Result<Vec<_>>>()?;
+    let deformation = Deformation::new(&field, &measured);
+    let forces = Forces::new(&field, given, &measured);
+    let rows = JudgedRows::new(&field, &deformation, &forces);
     let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };
-    let mut lost = Entry::default();
-    let forces = Forces::new(&field, &deformation);
-    let (rows, mut energies) = (Measured::new(&field, &deformation, &forces), Energies::default());
-    for p in 0..data.bodies.len() {
-        forces::judge(&field, &forces, p, (&mut certificate, &mut lost), &mut energies)?;
+    let (mut lost, mut energies) = (Entry::default(), Energies::default());
+    for (p, body) in measured.iter().enumerate() {
+        forces.judge(p, body, &mut certificate, &mut lost);
+        energies.add_body(&field, body);
     }
     energies.add_rows(&field);
     energies.add_slips(rows.dissipated());

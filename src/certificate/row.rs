@@ -54,7 +54,7 @@ impl JudgedRow {
         let by_spring = if rows.compliance[i] > 0.0 { rows.compliance[i] * force_limit } else { 0.0 };
         let allowed = field.data.limit * size + rounding + by_spring;
         let gap_limit = if known { allowed } else { f64::NAN };
-        let own = rows.matrix.row_dot_abs(i, &deformation.own_at) + felt;
+        let own = rows.matrix.row_dot_abs(i, &deformation.own) + felt;
         let (open, weighed) = (rows.open_gap(i, &field.at.u, force), scale * own);
         let closed = force.abs() > force_limit;
         let unevenness = if closed { ratio(weighed, forces.least_deformation(field, kind, i)) } else { 0.0 };

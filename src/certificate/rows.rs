@@ -10,12 +10,12 @@ use crate::constraints::RowKind;
 use crate::linalg::vector::{ratio, weighted_norm};
 
 /// All rows of the island, contact rows, equality rows, tangential rows, and its nodes with friction.
-pub(super) struct Measured {
+pub(super) struct JudgedRows {
     rows: [Vec<JudgedRow>; 3],
     nodes: Vec<JudgedNode>,
 }
 
-impl Measured {
+impl JudgedRows {
     pub fn new(field: &Field, deformation: &Deformation, forces: &Forces) -> Self {
         let row = |kind, i| JudgedRow::new(field, deformation, forces, kind, i);
         let of = |kind| (0..field.rows(kind).len()).map(|i| row(kind, i)).collect();
