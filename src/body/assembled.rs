@@ -51,6 +51,11 @@ impl Assembled {
         zeros(n, "a stiffness matrix")
     }
 
+    /// Of all pieces.
+    pub fn entries(&self) -> usize {
+        self.pieces.iter().map(|(_, k)| k.col.len()).sum()
+    }
+
     pub fn order(&self) -> usize {
         self.diagonal.len()
     }

@@ -41,6 +41,15 @@ impl Stiffness<'_> {
         }
     }
 
+    /// Number of its entries; of unknowns if the host keeps them.
+    pub fn entries(&self) -> usize {
+        match self {
+            Self::Matrix(k) => k.col.len(),
+            Self::Host(k) => k.order(),
+            Self::Assembled(k) => k.entries(),
+        }
+    }
+
     /// `y = K x`
     pub fn mul(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
         match self {

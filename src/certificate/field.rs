@@ -1,7 +1,8 @@
 //! What all entries need: the rows of the island with the forces on them, values at the unknowns that rows touch, and the bodies.
 
+use crate::body::Kept;
 use crate::certificate::carried::{stiffest, Metric, Search};
-use crate::certificate::part::{Fitted, Part, Told};
+use crate::certificate::part::{Felt, Fit, Fitted, Told};
 use crate::certificate::{Candidate, Data};
 use crate::constraints::{row_scales, RowKind, RowSet};
 use crate::error::Result;
@@ -32,24 +33,22 @@ pub(super) struct AtRows {
     pub push_terms: Vec<f64>,
     /// r without the forces of an unknown's own rows where it is carried, force.
     pub passed_on: Vec<f64>,
-    /// Loads, force.
-    pub load: Vec<f64>,
     /// Carried unknowns.
     pub carried: Vec<bool>,
 }
 
 impl<'a> Field<'a> {
-    /// With the bodies, which keep what their rows do to them.
-    pub fn new(data: &'a Data<'a>, answer: Candidate<'a>) -> Result<(Self, Vec<Part<'a>>)> {
+    /// With what the bodies keep of it.
+    pub fn new(data: &'a Data<'a>, answer: Candidate<'a>) -> Result<(Self, Kept<Felt>)> {
         let metered = data.metered();
         let unit = metered.iter().map(|(k, without)| stiffest(*k, *without)).fold(0.0, f64::max);
         let unit = power_of_two_below(unit);
         let at = AtRows::new(data, answer, unit)?;
-        let parts = data.bodies.iter().enumerate().map(|(p, body)| {
+        let told = |p: usize| {
             let range = data.touched.range(p);
             let told = Told {
                 unit,
-                dofs: data.touched.dofs(p).collect(),
+                without: data.without(data.bodies.body(p)),
                 metric: at.metric[range.clone()].to_vec(),
                 led: at.led[range.clone()].to_vec(),
                 carried: at.carried[range.clone()].to_vec(),
@@ -57,12 +56,11 @@ impl<'a> Field<'a> {
                 push_terms: at.push_terms[range.clone()].to_vec(),
                 passed_on: at.passed_on[range].to_vec(),
             };
-            Part::new(body, told, answer.u.on(p))
-        });
-        let parts = parts.collect::<Result<Vec<_>>>()?;
-        let fitted = parts.iter().map(Part::fitted).collect::<Result<_>>()?;
+            Fit { told }
+        };
+        let (fitted, felt) = data.bodies.make(told, (answer.u, &data.loads))?;
         let scales = RowKind::ALL.map(|kind| row_scales(data.rows(kind), &at.metric, unit));
-        Ok((Self { data, answer, unit, at, scales, fitted }, parts))
+        Ok((Self { data, answer, unit, at, scales, fitted }, felt))
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
@@ -110,13 +108,8 @@ impl AtRows {
             rows.matrix.mul_transposed_add(1.0, multipliers, &mut push);
             rows.matrix.mul_transposed_abs_add(multipliers, &mut push_terms);
         }
-        let load =
-            data.bodies.iter().enumerate().flat_map(|(p, body)| {
-                touched.dofs(p).map(move |dof| body.load.map_or(0.0, |load| load[dof]))
-            });
-        let load = load.collect();
         let passed_on = passed_on(data, answer, &push, &carried);
-        Ok(Self { u: touched.at(answer.u), metric, led, push, push_terms, passed_on, load, carried })
+        Ok(Self { u: answer.at_rows.to_vec(), metric, led, push, push_terms, passed_on, carried })
     }
 }
 

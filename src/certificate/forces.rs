@@ -130,11 +130,11 @@ fn at_grounded(field: &Field, rows: &RowSet, i: usize, p: usize) -> f64 {
     if !own.iter().all(|&j| field.is_grounded(p, j)) {
         return 0.0;
     }
-    let size = |of: &[f64]| {
-        let forces: Vec<f64> = own.iter().map(|&j| of[j]).collect();
+    let size = |of: &dyn Fn(usize) -> f64| {
+        let forces: Vec<f64> = own.iter().map(|&j| of(j)).collect();
         weighted_norm(&forces, |k| 1.0 / at.metric[own[k]])
     };
-    size(&at.load) + size(&at.push)
+    size(&|j| field.fitted[p].load[j - range.start]) + size(&|j| at.push[j])
 }
 
 /// The forces that would cause the motion prescribed by rows and grounded unknowns, force: `|S c_-| + |S_H h|`, `|S_T

@@ -22,13 +22,12 @@ mod row;
 mod rows;
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
-use crate::body::Stiffness;
+use crate::body::{wire_struct, Kept, Local, Locals};
 use crate::constraints::{FrictionNode, RowKind, RowSet, Touched};
 use crate::error::Result;
-use crate::linalg::by_body::Ranges;
-use crate::linalg::vector::{norm_max, power_of_two_below};
-use crate::linalg::{ByBody, Matrix};
+use crate::linalg::vector::power_of_two_below;
 
 pub use crate::linalg::vector::NOISE;
 pub use carried::{everywhere, led, Metric};
@@ -39,15 +38,14 @@ pub use entry::{Certificate, Entry};
 use field::Field;
 use forces::{Forces, Given};
 pub use grounded::grounded;
-use part::Shared;
+pub use part::{Fit, Largest, Lend, LoadOf, Measure};
 use rows::JudgedRows;
 
 /// One island in terms of the host's data.
 #[derive(Clone)]
 pub struct Data<'a> {
-    pub bodies: Vec<BodyData<'a>>,
-    /// Their unknowns in vectors over all of them.
-    pub ranges: &'a Ranges,
+    pub bodies: Locals<'a>,
+    pub loads: Kept<Load>,
     /// The unknowns that rows touch, t.
     pub touched: &'a Touched,
     /// `B u <= c`, m x t. A gap of +infinity never closes.
@@ -62,12 +60,19 @@ pub struct Data<'a> {
     pub limit: f64,
     /// `data_accuracy`, no unit.
     pub accuracy: f64,
+    /// The metric where no body has stiffness, force / length.
+    pub unit: Option<f64>,
 }
 
 impl<'a> Data<'a> {
     /// The bodies, for the search for what rows hold.
     pub fn metered(&self) -> Vec<Metered<'a>> {
-        self.bodies.iter().map(|body| (body.stiffness, body.unit)).collect()
+        self.bodies.iter().map(|body| (body.stiffness, self.without(body))).collect()
+    }
+
+    /// The metric of unknowns of a body without stiffness, force / length.
+    fn without(&self, body: &Local) -> f64 {
+        self.unit.unwrap_or(body.unit)
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
@@ -80,13 +85,13 @@ impl<'a> Data<'a> {
 
     /// Where nothing has stiffness, no force deforms anything, and D may be any number: then it is the force by the way, of the
     /// unknowns, of rows with a force and of slips so far, so that gaps are relative to this way.
-    fn measured_by(&self, answer: Candidate) -> Cow<'_, Self> {
+    fn measured_by(&self, answer: Candidate) -> Result<Cow<'_, Self>> {
         if self.bodies.iter().any(|body| body.stiffness.largest_diagonal() > 0.0) {
-            return Cow::Borrowed(self);
+            return Ok(Cow::Borrowed(self));
         }
-        let loads = self.bodies.iter().map(|body| norm_max(body.load.unwrap_or_default()));
-        let travelled = answer.u.each().map(norm_max).fold(0.0, f64::max);
-        let (mut force, mut way) = (loads.fold(0.0, f64::max), travelled);
+        let largest = self.bodies.ask(|_| Largest, (answer.u, &self.loads))?.into_iter();
+        let (mut way, mut force) =
+            largest.fold((0.0, 0.0), |most: (f64, f64), (way, force)| (most.0.max(way), most.1.max(force)));
         for kind in RowKind::ALL {
             let rows = self.rows(kind);
             for (i, f) in answer.forces(kind).iter().enumerate() {
@@ -98,36 +103,17 @@ impl<'a> Data<'a> {
             }
         }
         let unit = power_of_two_below((force / way).min(2f64.powi(500)));
-        let bodies = self.bodies.iter().map(|body| BodyData { unit, ..body.clone() }).collect();
-        Cow::Owned(Self { bodies, ..self.clone() })
-    }
-
-    /// A vector that is 0 on grounded unknowns.
-    pub fn without_grounded(&self, mut v: ByBody) -> ByBody {
-        for (p, body) in self.bodies.iter().enumerate() {
-            body.grounded.iter().for_each(|j| v.on_mut(p)[*j as usize] = 0.0);
-        }
-        v
+        Ok(Cow::Owned(Self { unit: Some(unit), ..self.clone() }))
     }
 }
 
-/// One body of the island, n_p unknowns.
-#[derive(Clone)]
-pub struct BodyData<'a> {
-    /// K_p, n_p x n_p, force / length.
-    pub stiffness: Stiffness<'a>,
+/// The load of a body, and that of the body of the host of which it is a part.
+#[derive(Debug, Clone, Default)]
+pub struct Load {
     /// f_p, n_p, force; zero if absent.
-    pub load: Option<&'a [f64]>,
-    /// The load of the body of the host of which this is a part; 0 if this is the body.
+    pub own: Option<Arc<[f64]>>,
+    /// 0 if the body is no part.
     pub whole: LoadOfWhole,
-    /// R_p, n_p x r, no unit, with `R'DR = unit`.
-    pub null_space: &'a Matrix,
-    /// K has positive or negative stiffness along motions of R, which are exact: `(K R)'u` is part of their balance.
-    pub soft: bool,
-    /// Force / length, also the metric of dofs without stiffness.
-    pub unit: f64,
-    /// Unknowns of the body held so stiffly that neighbours are negligible, ascending: see `grounded`.
-    pub grounded: &'a [u32],
 }
 
 /// The load of a body of the host that has several parts, without grounded unknowns.
@@ -139,21 +125,34 @@ pub struct LoadOfWhole {
     pub largest: f64,
 }
 
-impl BodyData<'_> {
-    /// Its load, with this `(f'D~^-1 f)^1/2`, is rounding of the load of the whole: a soft part, or one with a large load, makes it
+wire_struct!(Load { own, whole });
+wire_struct!(LoadOfWhole { size, largest });
+
+impl Load {
+    /// `f_j`, force.
+    pub fn at(&self, j: usize) -> f64 {
+        self.own.as_ref().map_or(0.0, |f| f[j])
+    }
+
+    /// n_p, or none.
+    pub fn entries(&self) -> &[f64] {
+        self.own.as_ref().map_or(&[], |f| f)
+    }
+
+    /// A load with this `(f'D~^-1 f)^1/2` is rounding of the load of the whole: a soft part, or one with a large load, makes it
     /// none alone.
-    pub fn is_noise(&self, size: f64) -> bool {
+    pub fn is_noise(&self, size: f64, grounded: &[u32]) -> bool {
         if !(self.whole.size > 0.0 && size <= NOISE * self.whole.size) {
             return false;
         }
-        let largest = acting(self.load, self.grounded).fold(0.0, |most: f64, (_, f)| most.max(f.abs()));
+        let largest = acting(self.entries(), grounded).fold(0.0, |most: f64, (_, f)| most.max(f.abs()));
         largest <= NOISE * self.whole.largest
     }
 }
 
 /// The entries of a load that are not 0, without grounded unknowns.
-pub fn acting<'a>(load: Option<&'a [f64]>, grounded: &'a [u32]) -> impl Iterator<Item = (usize, f64)> + 'a {
-    let entries = load.unwrap_or_default().iter().copied().enumerate();
+pub fn acting<'a>(load: &'a [f64], grounded: &'a [u32]) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let entries = load.iter().copied().enumerate();
     entries.filter(|(i, f)| *f != 0.0 && grounded.binary_search(&(*i as u32)).is_err())
 }
 
@@ -161,7 +160,9 @@ pub fn acting<'a>(load: Option<&'a [f64]>, grounded: &'a [u32]) -> impl Iterator
 #[derive(Clone, Copy)]
 pub struct Candidate<'a> {
     /// Length.
-    pub u: &'a ByBody,
+    pub u: &'a Kept,
+    /// The same where rows touch.
+    pub at_rows: &'a [f64],
     /// m, force.
     pub lambda: &'a [f64],
     /// q, force.
@@ -236,13 +237,12 @@ pub enum FrictionState {
 
 /// The judgement of an answer. Fails if the host's products with K fail.
 pub fn certify(data: &Data, answer: Candidate) -> Result<Judgement> {
-    let data = &*data.measured_by(answer);
-    let (field, parts) = Field::new(data, answer)?;
+    let data = &*data.measured_by(answer)?;
+    let (field, felt) = Field::new(data, answer)?;
     let (given, free) = (Given::new(&field), free_motions(&field)?);
-    let measured = parts.iter().zip(free).enumerate().map(|(p, (part, free))| {
-        part.measured(&Shared { free, limit: data.limit, idle: given.nothing(&field, p) })
-    });
-    let measured = measured.collect::<Result<Vec<_>>>()?;
+    let measure =
+        |p: usize| Measure { free: free[p].clone(), limit: data.limit, idle: given.nothing(&field, p) };
+    let measured = data.bodies.ask(measure, (&felt, answer.u, &data.loads))?;
     let deformation = Deformation::new(&field, &measured);
     let forces = Forces::new(&field, given, &measured);
     let rows = JudgedRows::new(&field, &deformation, &forces);

@@ -44,6 +44,11 @@ impl Touched {
     }
 
     /// Touched unknowns of a body, within it, ascending.
+    pub fn on(&self, body: usize) -> &[u32] {
+        &self.dofs[self.range(body)]
+    }
+
+    /// The same as numbers of all sizes.
     pub fn dofs(&self, body: usize) -> impl ExactSizeIterator<Item = usize> + Clone + '_ {
         self.dofs[self.range(body)].iter().map(|dof| *dof as usize)
     }
@@ -58,19 +63,7 @@ impl Touched {
         self.dofs[j] as usize
     }
 
-    /// The values there.
-    pub fn at<T: Copy>(&self, v: &ByBody<T>) -> Vec<T> {
-        v.each().enumerate().flat_map(|(p, own)| self.dofs(p).map(|dof| own[dof])).collect()
-    }
-
-    /// Changes the values there.
-    pub fn change<T: Copy>(&self, v: &mut ByBody<T>, change: impl FnOnce(&mut [T])) {
-        let mut values = self.at(v);
-        change(&mut values);
-        self.set(&values, v);
-    }
-
-    /// Replaces the values there.
+    /// Replaces the values where rows touch.
     pub fn set<T: Copy>(&self, values: &[T], v: &mut ByBody<T>) {
         for p in 0..self.ends.len() {
             let own = v.on_mut(p);
@@ -101,8 +94,8 @@ mod tests {
         assert!(places.iter().enumerate().all(|(j, &(body, dof))| touched.place(body, dof) == Some(j)));
         assert_eq!(touched.place(0, 1), None);
         let mut v = ByBody::of(&Arc::new(ranges.to_vec()), (0..9).map(f64::from).collect());
-        assert_eq!(touched.at(&v), [0.0, 2.0, 4.0, 8.0]);
-        touched.change(&mut v, |at| at.iter_mut().for_each(|v| *v += 10.0));
+        assert_eq!((touched.on(0), touched.on(1), touched.on(2)), (&[0, 2][..], &[][..], &[1][..]));
+        touched.set(&[10.0, 12.0, 14.0, 18.0], &mut v);
         assert_eq!(v.in_sequence(), [10.0, 1.0, 12.0, 3.0, 14.0, 5.0, 6.0, 7.0, 18.0]);
     }
 }

@@ -31,17 +31,15 @@ pub use turned::{TurnedFace, TurnedRow};
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::body::{Asking, GeneralizedInverse};
+use crate::body::{Asking, GeneralizedInverse, LocalDual};
 use crate::constraints::Touched;
-use crate::dual::elsewhere::Each;
 use crate::dual::images::{coarse, scale_by_body};
 use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::dual::springs::{add_springs, negative_modes};
 use crate::error::Result;
-use crate::linalg::vector::{dot, norm_max, weighted_norm, NOISE};
-use crate::linalg::{ByBody, Csr};
-use crate::platform::memory::zeros;
+use crate::linalg::vector::NOISE;
+use crate::linalg::Csr;
 use crate::platform::tally;
 
 /// One body in the dual problem.
@@ -208,6 +206,12 @@ impl Dual {
         alpha.iter().zip(sizes).map(|(a, size)| a / size).collect()
     }
 
+    /// Body p, of an island with this 2^p and `D~ / 2^p` on its unknowns.
+    pub fn local<'a>(&'a self, p: usize, island: f64, metric: &'a [f64]) -> LocalDual<'a> {
+        let Subdomain { kplus, matrix, by, size, .. } = &self.subdomains[p];
+        LocalDual { kplus, rows: matrix, metric, island, by: *by, size: *size }
+    }
+
     /// The number by which R_p is divided in G and e.
     pub fn size_of(&self, p: usize) -> f64 {
         self.subdomains[p].size
@@ -225,31 +229,6 @@ impl Dual {
 
     pub fn bodies(&self) -> usize {
         self.subdomains.len()
-    }
-
-    /// `B_p K_p+ f_p` over the rows that touch each body: the motion caused by its load alone.
-    pub fn moved(&self, f: &ByBody, in_parallel: &InParallel<Vec<f64>>) -> Result<Vec<Vec<f64>>> {
-        let along_rows = |p: usize, u: Vec<f64>| {
-            let s = &self.subdomains[p];
-            (0..s.rows.len()).map(|k| s.by * s.matrix.row_dot(k, &u)).collect()
-        };
-        self.solutions(f, &along_rows, in_parallel)
-    }
-
-    /// What follows from `K_p+ f_p` of every body.
-    fn solutions(
-        &self,
-        f: &ByBody,
-        of: &(dyn Fn(usize, Vec<f64>) -> Vec<f64> + Sync),
-        in_parallel: &InParallel<Vec<f64>>,
-    ) -> Result<Vec<Vec<f64>>> {
-        let own = |p: usize| {
-            let mut u = zeros(f.on(p).len(), "a displacement")?;
-            self.subdomains[p].kplus.apply(f.on(p), &mut u)?;
-            Ok(of(p, u))
-        };
-        let asking = |p: usize| Some(self.subdomains[p].kplus.elsewhere()?.solving(true, f.on(p).to_vec()));
-        self.each(&Each { own: &own, asking: &asking, of_answer: of }, in_parallel)
     }
 
     /// `d = B K+ f - c` of (13), from `moved` of each body.
@@ -283,56 +262,16 @@ impl Dual {
         Ok(distances)
     }
 
-    /// The right-hand side of `G lambda = e` in (12), `e = R'f`; 0 if it is rounding of a self-equilibrated load.
-    pub fn resultants(&self, f: &ByBody) -> Vec<f64> {
-        let mut e = vec![0.0; self.modes()];
-        for (s, f) in self.subdomains.iter().zip(f.each()) {
-            for (k, mode) in s.modes.clone().enumerate() {
-                let motion = s.kplus.null_space.col(k);
-                let size = norm_max(motion) * f.iter().map(|f| f.abs()).sum::<f64>();
-                let resultant = Some(dot(motion, f)).filter(|e| e.abs() > s.kplus.rounding * size);
-                e[mode] = resultant.unwrap_or(0.0) / s.size;
-            }
-        }
-        e
-    }
-
-    /// For each mode the reference of its resultant: `|f|_{D^-1}` of its body, in the unit of the resultants; `metric`: D
-    /// over the unknowns.
-    pub fn sizes_of_loads(&self, f: &ByBody, metric: &ByBody) -> Vec<f64> {
-        let of = |((s, f), d): ((&Subdomain, &[f64]), &[f64])| {
-            vec![weighted_norm(f, |j| 1.0 / (d[j] * s.by)) / s.size; s.modes.len()]
-        };
-        self.subdomains.iter().zip(f.each()).zip(metric.each()).flat_map(of).collect()
+    /// From a number for each body one for each of its modes.
+    pub fn of_modes(&self, of_bodies: impl Iterator<Item = f64>) -> Vec<f64> {
+        self.subdomains.iter().zip(of_bodies).flat_map(|(s, of)| vec![of; s.modes.len()]).collect()
     }
 
     /// For each mode the factor for its resultants e for which their norm is `|D R c|_{D^-1}` of the load given by
-    /// [`Self::load_of`].
+    /// these resultants.
     pub fn sizes_of_modes(&self) -> Vec<f64> {
         let of = |s: &Subdomain| vec![s.size * s.by.sqrt(); s.modes.len()];
         self.subdomains.iter().flat_map(of).collect()
-    }
-
-    /// `D R c`, the load of least |f|_{D^-1} with the resultants `e`; `metric`: D over the unknowns.
-    pub fn load_of(&self, e: &[f64], metric: &ByBody) -> ByBody {
-        let mut load = metric.clone();
-        for (p, s) in self.subdomains.iter().enumerate() {
-            let own = load.on_mut(p);
-            own.fill(0.0);
-            s.kplus.null_space.mul_add(s.size, &e[s.modes.clone()], own);
-            own.iter_mut().zip(metric.on(p)).for_each(|(f, d)| *f *= d * s.by);
-        }
-        load
-    }
-
-    /// `u_p = K_p+ f_p` of every body, (17) without its rigid motion, for the load f left by the forces of the rows; (16) if
-    /// it is held, K+ = K^-1.
-    pub fn displacements(&self, f: &ByBody, in_parallel: &InParallel<Vec<f64>>) -> Result<Vec<Vec<f64>>> {
-        let in_unit = |p: usize, mut u: Vec<f64>| {
-            u.iter_mut().for_each(|u| *u *= self.subdomains[p].by);
-            u
-        };
-        self.solutions(f, &in_unit, in_parallel)
     }
 
     /// `v += R a` of body p, a over all modes.

@@ -5,8 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::vector::axpy;
-use crate::platform::memory::{copied, filled, reserved};
+use crate::platform::memory::reserved;
 
 /// Where each body begins and ends among all unknowns.
 pub type Ranges = Arc<Vec<Range<usize>>>;
@@ -18,12 +17,6 @@ pub struct ByBody<T = f64> {
 }
 
 impl<T: Copy> ByBody<T> {
-    /// The same value everywhere; `what` names the vector in errors.
-    pub fn filled(ranges: &Ranges, value: T, what: &str) -> Result<Self> {
-        let values = filled(ranges.last().map_or(0, |range| range.end), value, what)?;
-        Ok(Self { ranges: Arc::clone(ranges), values })
-    }
-
     /// These values, body after body.
     pub fn of(ranges: &Ranges, values: Vec<T>) -> Self {
         Self { ranges: Arc::clone(ranges), values }
@@ -59,28 +52,7 @@ impl<T: Copy> ByBody<T> {
         &self.values
     }
 
-    /// The image of each value.
-    pub fn map<U: Copy>(&self, of: impl Fn(T) -> U) -> ByBody<U> {
-        ByBody { ranges: Arc::clone(&self.ranges), values: self.values.iter().map(|v| of(*v)).collect() }
-    }
-
-    /// Changes each value.
-    pub fn change(&mut self, change: impl FnMut(&mut T)) {
-        self.values.iter_mut().for_each(change);
-    }
-}
-
-impl ByBody {
-    pub fn zeros(ranges: &Ranges, what: &str) -> Result<Self> {
-        Self::filled(ranges, 0.0, what)
-    }
-
-    pub fn copied(&self, what: &str) -> Result<Self> {
-        Ok(Self { ranges: Arc::clone(&self.ranges), values: copied(&self.values, what)? })
-    }
-
-    /// `self += a x`
-    pub fn add(&mut self, a: f64, x: &Self) {
-        axpy(a, &x.values, &mut self.values);
+    pub fn into_sequence(self) -> Vec<T> {
+        self.values
     }
 }

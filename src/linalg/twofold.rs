@@ -1,6 +1,6 @@
 //! Sums of products in double-double arithmetic: Dot2 of Ogita, Rump, Oishi, "Accurate sum and dot product" (2005).
 
-use crate::linalg::ByBody;
+use crate::ranks::wire_struct;
 
 /// A sum as accurate as if computed with 106 bits and rounded once, except if terms over- or underflow.
 #[derive(Debug, Clone, Copy, Default)]
@@ -26,6 +26,11 @@ impl Twofold {
         self.lost += a.mul_add(b, -product);
     }
 
+    pub fn add_twofold(&mut self, other: Self) {
+        self.add(other.sum);
+        self.lost += other.lost;
+    }
+
     /// `x'y`
     pub fn dot(x: &[f64], y: &[f64]) -> f64 {
         let mut sum = Self::default();
@@ -43,6 +48,8 @@ impl Twofold {
     }
 }
 
+wire_struct!(Twofold { sum, lost });
+
 impl From<f64> for Twofold {
     fn from(sum: f64) -> Self {
         Self { sum, lost: 0.0 }
@@ -56,45 +63,8 @@ fn add_to(sum: &mut f64, lost: &mut f64, by: f64) {
     (*sum, *lost) = (all.sum, all.lost);
 }
 
-/// A vector over the unknowns of bodies in two doubles: the sum of `parts`, the second below the rounding of the first.
-#[derive(Debug, Clone)]
-pub struct TwofoldByBody {
-    parts: [ByBody; 2],
-}
-
-impl TwofoldByBody {
-    pub fn parts(&self) -> [&ByBody; 2] {
-        [&self.parts[0], &self.parts[1]]
-    }
-
-    /// Rounded once.
-    pub fn values(&self) -> ByBody {
-        let mut values = self.parts[0].clone();
-        values.add(1.0, &self.parts[1]);
-        values
-    }
-
-    /// Adds a vector on body p.
-    pub fn add_on(&mut self, p: usize, by: &[f64]) {
-        let [sum, lost] = &mut self.parts;
-        let own = sum.on_mut(p).iter_mut().zip(lost.on_mut(p));
-        own.zip(by).for_each(|((sum, lost), by)| add_to(sum, lost, *by));
-    }
-
-    pub fn add(&mut self, by: &ByBody) {
-        by.each().enumerate().for_each(|(p, by)| self.add_on(p, by));
-    }
-}
-
-impl From<ByBody> for TwofoldByBody {
-    fn from(v: ByBody) -> Self {
-        let rest = v.map(|_| 0.0);
-        Self { parts: [v, rest] }
-    }
-}
-
 /// A vector in two doubles: the sum of `parts`, the second below the rounding of the first.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct TwofoldVector {
     parts: [Vec<f64>; 2],
 }
@@ -120,6 +90,11 @@ impl TwofoldVector {
     pub fn add(&mut self, i: usize, by: f64) {
         let [sum, lost] = &mut self.parts;
         add_to(&mut sum[i], &mut lost[i], by);
+    }
+
+    /// `self += by`
+    pub fn add_all(&mut self, by: &[f64]) {
+        by.iter().enumerate().for_each(|(i, by)| self.add(i, *by));
     }
 
     pub fn set_to_zero(&mut self, i: usize) {

@@ -18,7 +18,7 @@ use crate::platform::interrupt::Interrupt;
 use crate::platform::memory::filled;
 use frame::{Frame, FRAME};
 pub use wire::{damaged, message, put_all, value, Wire};
-pub(crate) use wire::{wire_enum, wire_struct};
+pub(crate) use wire::{wire_enum, wire_struct, wire_unit};
 
 /// Moves bytes between rank 0 and another rank, in the order in which they are sent. Each call returns whether it succeeded.
 pub trait Link: Send + Sync {

@@ -76,6 +76,20 @@ macro_rules! wire_struct {
 }
 pub(crate) use wire_struct;
 
+/// Sends a struct without fields.
+macro_rules! wire_unit {
+    ($($name:ident),+) => {$(
+        impl $crate::ranks::Wire for $name {
+            fn put(&self, _: &mut Vec<u8>) {}
+
+            fn take(_: &mut &[u8]) -> $crate::error::Result<Self> {
+                Ok(Self)
+            }
+        }
+    )+};
+}
+pub(crate) use wire_unit;
+
 /// Sends an enum without data as the number of its value.
 macro_rules! wire_enum {
     ($name:ident { $($value:ident),+ $(,)? }) => {

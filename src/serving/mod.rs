@@ -2,6 +2,9 @@
 
 #[cfg(feature = "loopback")]
 pub mod loopback;
+mod questions;
+
+pub use questions::taken;
 
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::Arc;
@@ -19,14 +22,14 @@ pub fn serve(ranks: &Arc<Ranks>, threads: i64) -> Result<()> {
     if ranks.rank == 0 {
         return ranks.end();
     }
-    let (threads, mut bodies) = (threads::count(threads, usize::MAX), Bodies::default());
-    answer_all(ranks, &mut bodies, &mut |incoming, bodies| answer(bodies, incoming, threads))
+    let (threads, bodies) = (threads::count(threads, usize::MAX), Bodies::new(taken));
+    answer_all(ranks, &bodies, &mut |incoming, bodies| answer(bodies, incoming, threads))
 }
 
 /// Answers by this function until rank 0 ends it. A panic is an error of the request.
 pub fn answer_all(
     ranks: &Ranks,
-    bodies: &mut Bodies,
+    bodies: &Bodies,
     answer: &mut dyn FnMut(&Incoming, &Bodies) -> Result<Vec<u8>>,
 ) -> Result<()> {
     loop {

@@ -20,7 +20,7 @@ use crate::qp::BetweenSolves;
 use crate::setup::islands::{Island, Members};
 use crate::setup::operators::Operators;
 use crate::setup::prepared::{Duals, Prepared};
-use crate::setup::ready::Ready;
+use crate::setup::ready::{Apart, Ready};
 use crate::setup::rows::DualRows;
 use crate::setup::separate::islands;
 use crate::setup::whole::Whole;
@@ -121,7 +121,7 @@ impl Prepared {
         for ready in islands {
             ready.island.refresh(lengths);
             ready.rows.level_gaps(&mut ready.island, lengths);
-            let Some(whole) = &mut ready.whole else { continue };
+            let Some(whole) = ready.apart.as_mut().and_then(|apart| apart.whole.as_mut()) else { continue };
             whole.island.refresh(lengths);
             let (level, own) = (&ready.island.contact.rows, &mut whole.island.contact.rows);
             own.rhs.clone_from(&level.rhs);
@@ -136,7 +136,7 @@ impl Prepared {
         for ready in islands {
             for (&p, metric) in ready.island.bodies.iter().zip(ready.metric.each()) {
                 let grounded = self.inverse(model, p).map_or(&[][..], |inverse| &inverse.grounded);
-                let load = model.bodies[p].body.load.as_deref();
+                let load = model.bodies[p].body.load.as_ref().map_or(&[][..], |load| load);
                 let (mut own, mut largest) = (Vec::new(), 0.0);
                 for (i, f) in acting(load, grounded) {
                     own.push(f / (metric[i] * ready.island.unit).sqrt());
@@ -224,12 +224,13 @@ impl Prepared {
                 dual,
                 rows,
                 metric,
-                whole: whole.map(Box::new),
+                apart: whole.map(|whole| Box::new(Apart { whole: Some(whole), ..Apart::default() })),
                 preconditioner: None,
                 kept: BetweenSolves::default(),
                 pairs,
             });
         }
+        self.join(model, &mut ready)?;
         let loads = self.loads_of_hosts(model, &ready);
         Ok(Duals { of: model.revisions, islands: ready, operators, island_of, loads })
     }

@@ -7,8 +7,8 @@ use crate::certificate::{Certificate, Entry};
 use crate::constraints::{FrictionNode, RowKind, RowSet, Taken, Touched};
 use crate::error::Result;
 use crate::linalg::by_body::Ranges;
-use crate::linalg::ByBody;
 use crate::model::{Lengths, SolvedModel};
+use crate::platform::memory::copied;
 
 const WHAT: &str = "groups of bodies";
 
@@ -99,26 +99,21 @@ impl Island {
         (&self.members(kind).rows, place)
     }
 
-    /// The loads of its bodies, force.
-    pub fn loads(&self, model: &SolvedModel) -> Result<ByBody> {
-        let mut all = ByBody::zeros(&self.ranges, "the loads")?;
-        for (k, &p) in self.bodies.iter().enumerate() {
-            if let Some(load) = &model.bodies[p].body.load {
-                all.on_mut(k).copy_from_slice(load);
-            }
-        }
-        Ok(all)
-    }
-
     /// Copies the values of the island from values over all unknowns.
-    pub fn gather(&self, model: &SolvedModel, all: &[f64]) -> Result<ByBody> {
-        ByBody::from_each(&self.ranges, self.bodies.iter().map(|&p| &all[model.range(p)]), WHAT)
+    pub fn gather(&self, model: &SolvedModel, all: &[f64]) -> Result<Vec<Vec<f64>>> {
+        let own = |&p: &usize| copied(&all[model.range(p)], WHAT);
+        self.bodies.iter().map(own).collect()
     }
 
     /// Copies values over the unknowns of the island to values over all unknowns.
-    pub fn scatter(&self, model: &SolvedModel, own: &ByBody, all: &mut [f64]) {
-        for (&p, own) in self.bodies.iter().zip(own.each()) {
-            all[model.range(p)].copy_from_slice(own);
+    pub fn scatter<O: AsRef<[f64]>>(
+        &self,
+        model: &SolvedModel,
+        own: impl IntoIterator<Item = O>,
+        all: &mut [f64],
+    ) {
+        for (&p, own) in self.bodies.iter().zip(own) {
+            all[model.range(p)].copy_from_slice(own.as_ref());
         }
     }
 

@@ -6,6 +6,7 @@ mod factors;
 mod headroom;
 mod host;
 mod islands;
+mod join;
 mod lending;
 mod memory_limit;
 mod operators;

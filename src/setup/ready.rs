@@ -1,12 +1,14 @@
 //! The dual problem of an island, ready for any load and gap.
 
+use std::ops::Range;
 use std::sync::Arc;
 
+use crate::body::Token;
 use crate::dual::{Dual, Preconditioner};
 use crate::error::Result;
-use crate::linalg::vector::weighted_norm;
 use crate::linalg::ByBody;
 use crate::model::Preconditioning;
+use crate::platform::memory::zeros;
 use crate::platform::threads;
 use crate::qp::friction::PairsBetween;
 use crate::qp::BetweenSolves;
@@ -25,8 +27,8 @@ pub struct Ready {
     pub rows: Arc<DualRows>,
     /// `D~ / 2^p` over the unknowns.
     pub metric: Arc<ByBody>,
-    /// The island in terms of the host's bodies, if its own bodies are pieces of them.
-    pub whole: Option<Box<Whole>>,
+    /// What few islands have.
+    pub(super) apart: Option<Box<Apart>>,
     /// The preconditioner and its option.
     pub preconditioner: Option<Box<(Preconditioning, Preconditioner)>>,
     /// Data that a solve leaves for the next one.
@@ -35,7 +37,25 @@ pub struct Ready {
     pub pairs: Option<Box<PairsBetween>>,
 }
 
+#[derive(Default)]
+pub(super) struct Apart {
+    /// The island in terms of the host's bodies, if its own bodies are pieces of them.
+    pub whole: Option<Whole>,
+    /// The names of its bodies that other ranks have.
+    pub elsewhere: Box<[Option<Token>]>,
+}
+
 impl Ready {
+    /// The island in terms of the host's bodies, if its own bodies are pieces of them.
+    pub fn whole(&self) -> Option<&Whole> {
+        self.apart.as_ref()?.whole.as_ref()
+    }
+
+    /// The names of its bodies that other ranks have; empty if there are none.
+    pub fn elsewhere(&self) -> &[Option<Token>] {
+        self.apart.as_ref().map_or(&[], |apart| &apart.elsewhere)
+    }
+
     /// The option of the present preconditioner.
     pub fn preconditioning(&self) -> Preconditioning {
         self.preconditioner.as_ref().map_or(Preconditioning::None, |made| made.0)
@@ -48,20 +68,6 @@ impl Ready {
         } else {
             threads
         }
-    }
-
-    /// `B_p K_p+ f_p` of every body.
-    pub fn moved(&self, threads: usize, f: &ByBody) -> Result<Vec<Vec<f64>>> {
-        self.dual.moved(f, &self.solving(threads))
-    }
-
-    /// Runs solves with K+ of every body.
-    fn solving(
-        &self,
-        threads: usize,
-    ) -> impl Fn(usize, &(dyn Fn(usize) -> Result<Vec<f64>> + Sync)) -> Result<Vec<Vec<f64>>> + '_ {
-        let on_caller = |p: usize| self.dual.solves_on_caller(p);
-        move |count, task| threads::run_apart(threads, count, on_caller, task)
     }
 
     /// `sum_p |B_p u_p|`, row by row.
@@ -78,45 +84,21 @@ impl Ready {
         self.dual.distances(moved, x, alpha, &in_parallel)
     }
 
-    /// `K+ f`
-    pub fn displacement(&self, threads: usize, f: &ByBody) -> Result<ByBody> {
-        let bodies = self.dual.displacements(f, &self.solving(threads))?;
-        ByBody::from_each(&self.island.ranges, bodies, "a displacement")
-    }
-
-    /// `|f|_{D^-1}` of every body, in units of 2^p.
-    pub fn forces(&self, f: &ByBody) -> Vec<f64> {
-        f.each().zip(self.metric.each()).map(|(f, metric)| weighted_norm(f, |j| 1.0 / metric[j])).collect()
-    }
-
-    /// `|u|_D` of body p.
-    pub fn length(&self, p: usize, u: &[f64]) -> f64 {
-        let metric = self.metric.on(p);
-        weighted_norm(u, |j| metric[j])
-    }
-
-    /// `|u|_D`
-    pub fn length_of_all(&self, u: &ByBody) -> f64 {
-        let own: Vec<f64> = u.each().enumerate().map(|(p, u)| self.length(p, u)).collect();
-        weighted_norm(&own, |_| 1.0)
-    }
-
-    /// `|f|_{D^-1}`
-    pub fn force_of_all(&self, f: &ByBody) -> f64 {
-        weighted_norm(&self.forces(f), |_| 1.0)
-    }
-
     /// `R a`
-    pub fn rigid_motion(&self, a: &[f64]) -> ByBody {
-        let mut v = ByBody::of(&self.island.ranges, vec![0.0; self.island.unknowns()]);
-        (0..self.dual.bodies()).for_each(|p| self.dual.add_rigid_motion(p, a, v.on_mut(p)));
-        v
+    pub fn rigid_motion(&self, a: &[f64]) -> Result<Vec<Vec<f64>>> {
+        let of_body = |(p, range): (usize, &Range<usize>)| {
+            let mut v = zeros(range.len(), "a motion")?;
+            self.dual.add_rigid_motion(p, a, &mut v);
+            Ok(v)
+        };
+        self.island.ranges.iter().enumerate().map(of_body).collect()
     }
 
-    /// Subtracts `B'x` from a load, through the rows and forces of the host: if these cancel, the result is exactly 0.
-    pub fn take_forces(&self, x: &[f64], load: &mut ByBody) {
+    /// A load where rows touch without `B'x`, through the rows and forces of the host: if these cancel, the result is exactly 0.
+    pub fn without_forces(&self, x: &[f64], mut at_rows: Vec<f64>) -> Vec<f64> {
         let DualRows { scaled, scaling, .. } = &*self.rows;
         let forces = scaling.decoupling.solve_transposed(x.to_vec());
-        self.island.touched.change(load, |load| scaled.mul_transposed_add(-1.0, &forces, load));
+        scaled.mul_transposed_add(-1.0, &forces, &mut at_rows);
+        at_rows
     }
 }

@@ -137,11 +137,11 @@ impl Answer {
 
     /// Adds the answer of an island and its work counts.
     fn take_in(&mut self, model: &SolvedModel, ready: &Ready, solved: Solved) {
-        let Solved { ending, outcome, finished, unheld, slide, tries, .. } = solved;
+        let Solved { ending, u, outcome, finished, unheld, slide, tries, .. } = solved;
         let Ending { solution, recovered, judgement, .. } = ending;
         let island = &ready.island;
         let states = states(ready, &recovered, &judgement.contact);
-        island.scatter(model, &recovered.u, &mut self.u);
+        island.scatter(model, &u, &mut self.u);
         island.contact.scatter(&recovered.lambda, &mut self.lambda);
         island.contact.scatter(&states, &mut self.states);
         island.equalities.scatter(&recovered.mu, &mut self.mu);
@@ -152,7 +152,7 @@ impl Answer {
         let alpha = ready.dual.amplitudes(&solution.alpha);
         for (k, &p) in island.bodies.iter().enumerate() {
             self.alpha[p] = alpha[ready.dual.modes_of(k)].to_vec();
-            let judged = ready.whole.as_ref().map_or(k, |whole| whole.body_of[k]);
+            let judged = ready.whole().map_or(k, |whole| whole.body_of[k]);
             self.force_errors[p] = judgement.bodies[judged].force_error;
         }
         let report = &mut self.report;
@@ -211,11 +211,11 @@ impl Answer {
 
 /// Replaces the numbers of the island in a certificate by those of the host; rows that join pieces have no number.
 pub fn named(model: &SolvedModel, ready: &Ready, own: Certificate) -> Certificate {
-    let mut named = match &ready.whole {
+    let mut named = match ready.whole() {
         Some(whole) => whole.island.named(own),
         None => ready.island.named(own),
     };
-    if ready.whole.is_none() {
+    if ready.whole().is_none() {
         for entry in [&mut named.equilibrium, &mut named.balance] {
             entry.place.iter_mut().for_each(|body| *body = model.name(*body));
         }
@@ -230,7 +230,7 @@ pub fn named(model: &SolvedModel, ready: &Ready, own: Certificate) -> Certificat
 /// neither does.
 fn states(ready: &Ready, answer: &Recovered, zero: &[RowJudgement]) -> Vec<RowState> {
     let (Recovered { u, lambda, .. }, rows) = (answer, &ready.island.contact.rows);
-    let u = &ready.island.touched.at(u)[..];
+    let u = &u.at_rows[..];
     let state = |(i, zero): (usize, &RowJudgement)| {
         if lambda[i] > zero.force {
             RowState::Closed

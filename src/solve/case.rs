@@ -1,10 +1,12 @@
 //! One island with the data of the host.
 
-use crate::certificate::{BodyData, Data};
+use std::sync::Arc;
+
+use crate::body::{Kept, Local, Locals};
+use crate::certificate::{Data, Lend, Load};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::norm_max;
-use crate::linalg::ByBody;
 use crate::model::SolvedModel;
 use crate::platform::memory::zeros;
 use crate::setup::{Island, Prepared, Ready};
@@ -35,7 +37,10 @@ impl<'a> Case<'a> {
     }
 
     /// A motion of the island over all unknowns of the model, its largest entry 1 in size, and the body and dof of this entry.
-    pub fn fastest(&self, own: &ByBody) -> Result<(Vec<f64>, usize, usize)> {
+    pub fn fastest<O: AsRef<[f64]>>(
+        &self,
+        own: impl IntoIterator<Item = O>,
+    ) -> Result<(Vec<f64>, usize, usize)> {
         let mut v = zeros(self.model.sizes().dofs, "a motion")?;
         self.island().scatter(self.model, own, &mut v);
         let largest = norm_max(&v);
@@ -45,27 +50,53 @@ impl<'a> Case<'a> {
         Ok((v, body, fastest - self.model.offsets[body]))
     }
 
-    /// The data of the island for the certificate.
-    pub fn data(&self) -> Result<Data<'a>> {
+    /// The bodies of the island.
+    pub fn locals(&self) -> Result<Locals<'a>> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
-        let (model, island) = (self.model, self.island());
-        let mut bodies = Vec::with_capacity(island.bodies.len());
-        for &p in &island.bodies {
-            let body = &model.bodies[p].body;
-            let inverse = self.prepared.inverse(model, p).ok_or_else(missing)?;
-            bodies.push(BodyData {
+        let Self { model, prepared, ready, .. } = *self;
+        let Island { bodies, touched, unit, .. } = &*ready.island;
+        let local = |(k, &p): (usize, &usize)| {
+            let (body, inverse) = (&model.bodies[p].body, prepared.inverse(model, p).ok_or_else(missing)?);
+            Ok(Local {
                 stiffness: body.k().ok_or_else(missing)?,
-                load: body.load.as_deref(),
-                whole: self.prepared.load_of_whole(model, p),
                 null_space: &inverse.kplus.null_space,
                 soft: inverse.kplus.is_soft(),
-                unit: body.without(island.unit),
+                unit: body.without(*unit),
                 grounded: &inverse.grounded,
-            });
-        }
+                touched: touched.on(k),
+                dual: Some(ready.dual.local(k, *unit, ready.metric.on(k))),
+            })
+        };
+        let bodies = bodies.iter().enumerate().map(local).collect::<Result<_>>()?;
+        Ok(Locals::new(bodies, ready.elsewhere(), self.threads()))
+    }
+
+    /// The loads of the bodies.
+    pub fn loads(&self) -> Result<Kept<Load>> {
+        let load = |k: usize| {
+            let p = self.island().bodies[k];
+            let own = self.model.bodies[p].body.load.as_deref().map(Arc::from);
+            Lend { load: Load { own, whole: self.prepared.load_of_whole(self.model, p) } }
+        };
+        Ok(self.locals()?.make(load, ())?.1)
+    }
+
+    /// The data of the island for the certificate, with these loads.
+    pub fn data(&self, loads: Kept<Load>) -> Result<Data<'a>> {
+        let (model, island) = (self.model, self.island());
         let (limit, accuracy) = (model.settings.certificate_tolerance, model.settings.data_accuracy);
         let [contact, equalities, tangential] = RowKind::ALL.map(|kind| &island.members(kind).rows);
-        let (ranges, touched, nodes) = (&island.ranges, &*island.touched, &island.friction.nodes[..]);
-        Ok(Data { bodies, ranges, touched, contact, equalities, tangential, nodes, limit, accuracy })
+        Ok(Data {
+            bodies: self.locals()?,
+            loads,
+            touched: &island.touched,
+            contact,
+            equalities,
+            tangential,
+            nodes: &island.friction.nodes,
+            limit,
+            accuracy,
+            unit: None,
+        })
     }
 }

@@ -1,12 +1,13 @@
 //! The acceptance test of the methods: recovers the answer for a point of the dual problem of one island and evaluates
 //! its certificate.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::body::Distributed;
 use crate::certificate::Judgement;
 use crate::error::{Kind, Result};
 use crate::linalg::vector::norm;
-use crate::linalg::ByBody;
 use crate::numbers::solve::SETTLED;
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
@@ -56,7 +57,7 @@ pub struct Certifier<'a> {
 /// A point (x, alpha) of the dual problem whose answer has passed.
 struct Accepted {
     point: (Vec<f64>, Vec<f64>),
-    deformed: ByBody,
+    deformed: Arc<Distributed>,
     recovered: Recovered,
     judgement: Judgement,
 }
@@ -88,22 +89,21 @@ impl<'a> Certifier<'a> {
         change > SETTLED * SETTLED * size
     }
 
-    /// The rows left out that the displacement u violates.
-    fn beyond(&self, u: &ByBody) -> Vec<usize> {
-        let u = self.recovery.data.touched.at(u);
+    /// The rows left out that the displacement u, where rows touch, violates.
+    fn beyond(&self, u: &[f64]) -> Vec<usize> {
         let (rows, gaps) = (&self.recovery.ready.rows.scaled, &self.recovery.scaled.gaps.value);
         let far = self.assumed.far.iter().enumerate().filter(|(_, far)| **far);
-        far.map(|(i, _)| i).filter(|&i| rows.row_dot(i, &u) > gaps[i]).collect()
+        far.map(|(i, _)| i).filter(|&i| rows.row_dot(i, u) > gaps[i]).collect()
     }
 
     /// The answer of the point is kept if it passes.
     fn judge(&mut self, x: &[f64], alpha: &[f64]) -> Result<Judged> {
         let recovery = &self.recovery;
-        let deformed = recovery.deformed(x)?;
-        let recovered = recovery.recover(&deformed, x, alpha);
+        let deformed = Arc::new(recovery.deformed(x)?);
+        let recovered = recovery.recover(&deformed, x, alpha)?;
         let judgement = recovery.judged(&recovered)?;
         if !judgement.certificate.passed() {
-            let reached = self.beyond(&recovered.u);
+            let reached = self.beyond(&recovered.u.at_rows);
             self.missed = Some(judgement.certificate.worst());
             return Ok(match reached.is_empty() {
                 // violated rows join first: without them no other improvement helps
@@ -153,7 +153,7 @@ impl AcceptanceTest for Certifier<'_> {
 
     /// The certificate of whole bodies detects losses in pieces with soft and stiff parts; the dual problem does not.
     fn has_better_data(&self) -> bool {
-        self.recovery.ready.whole.is_some()
+        self.recovery.ready.whole().is_some()
     }
 
     fn pays_after(&self, effort: Effort) -> Option<usize> {
@@ -282,8 +282,8 @@ pub(super) mod tests {
         judging(&model, |judge| {
             for (x, alpha) in [([0.0, 0.0], 0.0), ([2.0, 0.0], -7.0), ([0.5, 1.5], 2.0)] {
                 let recovery = &judge.recovery;
-                let u = recovery.recover(&recovery.deformed(&x).unwrap(), &x, &[alpha]).u;
-                let moved = [0, 1].map(|i| recovery.ready.rows.matrix.row_dot(i, u.in_sequence()));
+                let u = recovery.recover(&recovery.deformed(&x).unwrap(), &x, &[alpha]).unwrap().u;
+                let moved = [0, 1].map(|i| recovery.ready.rows.matrix.row_dot(i, &u.at_rows));
                 let expected = norm(&moved) + norm(&recovery.scaled.gaps.dual).min(norm(&moved));
                 let scale = judge.scale(&x, &[alpha]).unwrap();
                 assert!((scale - expected).abs() <= 1e-14 * expected, "{alpha}");

@@ -1,6 +1,8 @@
 //! Option `finish`: after a solve, the residuals of the host's data correct forces and displacements together, each time
 //! on the rows that these data show to be in contact, until only rounding is left.
 
+use std::sync::Arc;
+
 use crate::certificate::Certificate;
 use crate::error::{Kind, Result};
 use crate::model::{FinishBy, Method, Settings};
@@ -115,7 +117,7 @@ impl<'a, 'b> Finish<'a, 'b> {
         let Some(faces) = self.sparse()? else { return Ok(()) };
         let Some(inside) = faces.inside(self.recovery.scaled)? else { return Ok(()) };
         if Rung::Interior.is_tried() {
-            let point = SplitPoint::inside(self.recovery, &inside);
+            let point = SplitPoint::inside(self.recovery, &inside)?;
             self.follow(inside.active, point, (dense, sets))?;
         }
         self.done.inside = (!self.passes()).then_some(inside.force);
@@ -150,7 +152,7 @@ impl<'a, 'b> Finish<'a, 'b> {
         while sets.go_on_with(&active) && self.ending.solution.counts.direct - before < most {
             let Some(undetermined) = self.on_face(&mut point, &active, dense)? else { break };
             self.ending.solution.counts.direct += 1;
-            let next = point.active(self.recovery);
+            let next = point.active(self.recovery)?;
             let misses =
                 self.keep(&point, undetermined, if next == active { is_no_worse } else { is_better })?;
             self.done.settled = next == active || self.ending.judgement.certificate.worst() <= RATIO_ROUNDING;
@@ -235,7 +237,7 @@ impl<'a, 'b> Finish<'a, 'b> {
         replaces: fn(&Certificate, &Certificate) -> bool,
     ) -> Result<bool> {
         let x = point.forces(&self.recovery.scaled.gaps.bounded);
-        let recovered = self.recovery.with_forces(point.displacement(), &x.parts());
+        let recovered = self.recovery.with_forces(point.displacement(self.recovery)?, &x.parts());
         let judgement = self.recovery.judged(&recovered)?;
         let Certificate { equilibrium, balance, equality, .. } = &judgement.certificate;
         let misses = [equilibrium, balance, equality].iter().any(|entry| entry.ratio > 1.0);
@@ -244,7 +246,7 @@ impl<'a, 'b> Finish<'a, 'b> {
             (solution.x, solution.alpha) = (x.values(), point.alpha.clone());
             solution.undetermined = undetermined;
             (self.ending.recovered, self.ending.judgement) = (recovered, judgement);
-            self.ending.deformed = point.deformed(self.recovery);
+            self.ending.deformed = Arc::new(point.deformed(self.recovery)?);
             self.done.replaced = true;
         }
         Ok(misses)
@@ -270,8 +272,8 @@ fn is_no_worse(new: &Certificate, old: &Certificate) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::Kept;
     use crate::certificate::Entry;
-    use crate::linalg::ByBody;
     use crate::qp::Solution;
     use crate::solve::certifier::tests::two_springs;
 
@@ -285,7 +287,7 @@ mod tests {
                 assert!(finish(recovery, &mut ending, Effort::All).unwrap().replaced, "{x:?}");
                 assert_eq!(ending.solution.x, [2.0, 0.0]);
                 assert_eq!(
-                    (ending.recovered.u.in_sequence(), ending.recovered.lambda.as_slice()),
+                    (ending.recovered.u.at_rows.as_slice(), ending.recovered.lambda.as_slice()),
                     ([1.0, 1.0].as_slice(), [2.0, 0.0].as_slice())
                 );
             }
@@ -298,8 +300,8 @@ mod tests {
             let recovery = &judge.recovery;
             for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
                 let mut ending = recovery.ending(solved.clone()).unwrap();
-                let mut point =
-                    SplitPoint::at_origin(recovery, ending.recovered.u.clone(), (solved.x.clone(), 0), 1.0);
+                let u = Arc::clone(&ending.recovered.u);
+                let mut point = SplitPoint::at_origin(recovery, &u.of, (solved.x.clone(), 0), 1.0).unwrap();
                 point.hold(&[0, 1].map(|i| !rows.contains(&i)));
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
@@ -317,7 +319,7 @@ mod tests {
                 finish.keep(&point, 0, is_better).unwrap();
                 assert_eq!(finish.done.replaced, right, "{rows:?}");
                 assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");
-                assert_eq!(point.active(recovery), [false, true], "{rows:?}");
+                assert_eq!(point.active(recovery).unwrap(), [false, true], "{rows:?}");
             }
         });
     }
@@ -326,10 +328,10 @@ mod tests {
     fn a_force_that_rounding_has_made_negative_is_none_and_its_row_leaves() {
         two_springs(0.0, |judge, _| {
             let recovery = &judge.recovery;
-            let u = ByBody::of(recovery.data.ranges, vec![1.0, 1.0]);
-            let point = SplitPoint::at_origin(recovery, u, (vec![2.0, -1e-20], 0), 1.0);
+            let u = Kept::of(vec![vec![1.0, 1.0]]);
+            let point = SplitPoint::at_origin(recovery, &u, (vec![2.0, -1e-20], 0), 1.0).unwrap();
             assert_eq!(point.forces(&[true, true]).values(), [2.0, 0.0]);
-            assert_eq!(point.active(recovery), [false, true]);
+            assert_eq!(point.active(recovery).unwrap(), [false, true]);
         });
     }
 
@@ -339,9 +341,9 @@ mod tests {
         two_springs(0.0, |judge, _| {
             for (beyond, open) in [(0.0, true), (1e-14, false), (-1e-14, true)] {
                 let recovery = &judge.recovery;
-                let u = ByBody::of(recovery.data.ranges, vec![1.0, 2.0 + beyond]);
-                let point = SplitPoint::at_origin(recovery, u, (vec![2.0, 0.0], 0), 1.0);
-                assert_eq!(point.active(recovery), [false, open], "{beyond}");
+                let u = Kept::of(vec![vec![1.0, 2.0 + beyond]]);
+                let point = SplitPoint::at_origin(recovery, &u, (vec![2.0, 0.0], 0), 1.0).unwrap();
+                assert_eq!(point.active(recovery).unwrap(), [false, open], "{beyond}");
             }
         });
     }

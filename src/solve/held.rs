@@ -6,25 +6,32 @@ use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::random::scattered;
 use crate::linalg::vector::weighted_norm;
-use crate::linalg::{ByBody, Csr, Matrix, Operator};
+use crate::linalg::{Csr, Matrix, Operator};
 use crate::numbers::rounding;
 use crate::numbers::solve::SMALL_FORCE;
+use crate::platform::memory::zeros;
 use crate::qp::AnswerFace;
 use crate::setup::Ready;
+use crate::solve::local::SizesOfForces;
 
 const WHAT: &str = "the forces of rows";
 
 /// Rows of the dual that hold nothing: groups of contact rows whose forces are all rounding, their own or, beside uneven rows, that of
-/// resultants, and tangential rows of nodes whose friction bound is 0. `load`: loads, `forces`: of the rows of each kind, force;
-/// `coarse`: G'.
-pub fn without_force(ready: &Ready, coarse: &Csr, load: &ByBody, forces: [&[f64]; 3]) -> Result<Vec<bool>> {
+/// resultants, and tangential rows of nodes whose friction bound is 0. `sizes`: of the forces on each body, with those of rows where they
+/// touch; `forces`: of the rows of each kind, force; `coarse`: G'.
+pub fn without_force(
+    ready: &Ready,
+    coarse: &Csr,
+    sizes: &dyn Fn(&[f64]) -> Result<Vec<SizesOfForces>>,
+    forces: [&[f64]; 3],
+) -> Result<Vec<bool>> {
     let (lambda, rows, island) = (forces[0], &ready.rows, &ready.island);
-    let mut push = ByBody::zeros(&island.ranges, WHAT)?;
-    island.touched.change(&mut push, |push| {
-        let kinds = RowKind::ALL.into_iter().zip(forces);
-        kinds.for_each(|(kind, f)| island.members(kind).rows.matrix.mul_transposed_add(1.0, f, push));
-    });
-    let [loads, pushes] = [load, &push].map(|f| ready.forces(f));
+    let mut push = zeros(island.touched.len(), WHAT)?;
+    let kinds = RowKind::ALL.into_iter().zip(forces);
+    kinds.for_each(|(kind, f)| island.members(kind).rows.matrix.mul_transposed_add(1.0, f, &mut push));
+    let sizes = sizes(&push)?;
+    let of = |of: fn(&SizesOfForces) -> f64| sizes.iter().map(of).collect::<Vec<f64>>();
+    let (loads, pushes) = (of(|body| body.load), of(|body| body.push));
     let everywhere = weighted_norm(&loads, |_| 1.0).hypot(weighted_norm(&pushes, |_| 1.0));
     let of_bodies = |part: f64, idle: f64| -> Vec<f64> {
         let nothing = |(own, push): (&f64, &f64)| {
@@ -62,14 +69,12 @@ pub fn without_force(ready: &Ready, coarse: &Csr, load: &ByBody, forces: [&[f64]
     if !is_carried && !rows.uneven {
         return Ok(held);
     }
-    let (dual, unit) = (&ready.dual, island.unit);
-    let load = load.map(|f| f / unit);
-    push.change(|push| *push /= unit);
-    let [own, by_rows] = [&load, &push].map(|f| dual.sizes_of_loads(f, &ready.metric));
-    let terms: Vec<f64> = own.iter().zip(by_rows).map(|(own, by_rows)| own + by_rows).collect();
+    let dual = &ready.dual;
+    let terms = dual.of_modes(sizes.iter().map(|body| body.of_load + body.of_push));
     if is_carried {
         let free = AnswerFace::new(coarse, &dual.blocks, &small, dual.rounding())?.undetermined()?;
-        judge(&mut held, &carries, coarse, &free, (&dual.resultants(&load), &terms), dual.rounding());
+        let resultants: Vec<f64> = sizes.iter().flat_map(|body| &body.resultants).copied().collect();
+        judge(&mut held, &carries, coarse, &free, (&resultants, &terms), dual.rounding());
     }
     if rows.uneven {
         let noise = rounding_of(&terms);

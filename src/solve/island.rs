@@ -1,9 +1,9 @@
 //! One island: solve the dual, recover the displacements, certify.
 
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 use crate::error::Result;
-use crate::linalg::vector::norm_max;
 use crate::linalg::{Csr, Operator};
 use crate::model::{Accuracy, Settings, SolvedModel};
 use crate::platform::{interrupt, threads};
@@ -28,6 +28,8 @@ use crate::solve::slides::Slide;
 /// How the solution of one island ended.
 pub struct Solved {
     pub ending: Ending,
+    /// Of every body, length.
+    pub u: Vec<Vec<f64>>,
     pub outcome: Outcome,
     /// The direct finish has replaced the answer.
     pub finished: bool,
@@ -131,14 +133,7 @@ fn solve_held(
 
 /// Scaled loads and gaps for the dual; refuses rows whose gaps no displacement satisfies.
 pub fn scaled(case: Case) -> Result<Scaled> {
-    let ready = case.ready;
-    let mut load = ready.island.loads(case.model)?;
-    load.change(|f| *f /= ready.island.unit);
-    interrupt::check()?;
-    let moved = ready.moved(case.threads(), &load)?;
-    let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);
-    let gaps = interrupt::part("presolve", || presolve(case, farthest))?;
-    Ok(Scaled::new(ready, load, moved, gaps))
+    Scaled::new(case, |farthest| interrupt::part("presolve", || presolve(case, farthest)))
 }
 
 /// One run on these loads and gaps: method, least travel, corrector, verdict.
@@ -180,8 +175,11 @@ fn run(
     let finished = corrected(settings, recovery, &mut ending, spoilt)?;
     let slide = if finished { interrupt::never(|| recovery.slides(&ending))? } else { slides }.worst();
     let outcome = outcome(case, dual, recovery, &mut ending, (slide.is_some(), accuracy))?;
+    let u = interrupt::never(|| recovery.data.bodies.bring(&ending.recovered.u.of))?;
+    let u = u.into_iter().map(Cow::into_owned).collect();
     Ok(Tried::Ended(Box::new(Solved {
         ending,
+        u,
         outcome,
         finished,
         unheld: dual.unheld.as_ref().map_or(0.0, |taken| taken.share),

@@ -16,6 +16,7 @@ mod host_form;
 mod interruptible;
 mod island;
 mod known;
+pub mod local;
 mod method;
 mod near;
 mod negative;
@@ -40,6 +41,7 @@ pub use case::Case;
 pub use every_island::solve_islands;
 pub use held::without_force;
 pub use known::products_of_known_states;
+
 pub use method::{DualMethod, HostForm};
 pub use report::{Outcome, Report, RowState};
 pub use slides::Slide;

@@ -13,9 +13,9 @@
 //! which ignores open rows: if the energy has risen, the previous answer is followed without it. If the face is too large
 //! for dense factors, the rounds continue without Newton steps and converge at the rate rho.
 
+use crate::body::Kept;
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::vector::{axpy, dot, NOISE};
-use crate::linalg::ByBody;
 use crate::numbers::solve::SAME_ENERGY;
 use crate::qp::friction::unheld;
 use crate::qp::{Qp, Rung, Solution, Verdict};
@@ -23,7 +23,7 @@ use crate::solve::case::Case;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::friction::cones;
-use crate::solve::recovery::Recovery;
+use crate::solve::recovery::{Recovered, Recovery};
 use crate::solve::sliding::Sliding;
 
 /// Limit of rounds.
@@ -135,7 +135,7 @@ impl<'a> Search<'a, '_> {
             None if !unsettled => return Ok(Next::End(Verdict::Solved)),
             // with friction there is no way downhill
             Some((motion, rate)) if !unsettled && (self.recovery.friction || known.rounds >= ROUNDS) => {
-                return Err(indefinite(self.case, &motion.v, *rate)?)
+                return Err(indefinite(self.case, &motion.v.of, *rate)?)
             }
             None if known.same > MENDED && round.feedback.is_some() && !self.recovery.friction => {
                 return Ok(Next::End(Verdict::Stalled))
@@ -166,7 +166,7 @@ impl<'a> Search<'a, '_> {
         }
         let held = self
             .recovery
-            .held_with_friction(&self.displacements(&solution.x, &solution.alpha)?, &solution.x)?;
+            .held_with_friction(&self.displacements(&solution.x, &solution.alpha)?.u.at_rows, &solution.x)?;
         let round = self.round(step, (solution, held))?;
         Ok(self.falling(&round, None, false)?.is_none())
     }
@@ -177,7 +177,7 @@ impl<'a> Search<'a, '_> {
         if matches!(solution.verdict, Verdict::Infeasible { .. }) && Rung::FirstProof.is_tried() {
             let e = self.negative.resultants(self.qp.e, &step.b);
             if let Some(motion) = self.unstopped(Qp { e: &e, ..self.qp }, &solution.x)? {
-                return Err(indefinite(self.case, &motion.v, f64::INFINITY)?);
+                return Err(indefinite(self.case, &motion.v.of, f64::INFINITY)?);
             }
         }
         match &known.last {
@@ -195,7 +195,7 @@ impl<'a> Search<'a, '_> {
         let (_, rest) = unheld(&qp, &cones(ready, &scaled.gaps, &rows)?, &sizes)?;
         let left = rest.iter().zip(&sizes).map(|(e, size)| size * size * e).collect();
         let motion = Sliding::of(self.recovery, vec![0.0; x.len()], left)?;
-        Ok(motion.falls_beside_forces(self.recovery)?.then_some(motion))
+        Ok(motion.falls_beside_forces(self.recovery).then_some(motion))
     }
 
     fn round(&self, step: &Step, (solution, held): (&Solution, Vec<bool>)) -> Result<Round<'a>> {
@@ -234,28 +234,28 @@ impl<'a> Search<'a, '_> {
         let Some((x, alpha, rate)) = found else { return Ok(None) };
         let mut motion = Sliding::of(self.recovery, x, alpha)?;
         if dot(&round.change, &self.negative.forced(&motion.alpha)) < 0.0 {
-            motion.turn();
+            motion.turn(self.recovery)?;
         }
         if self.recovery.friction && !motion.slips_on(self.recovery, &round.x, &round.held) {
-            motion.turn();
+            motion.turn(self.recovery)?;
             if unsettled || !motion.slips_on(self.recovery, &round.x, &round.held) {
                 return Ok(None);
             }
         }
-        Ok(motion.falls(self.recovery, &round.held)?.then_some((motion, rate)))
+        Ok(motion.falls(self.recovery, &round.held).then_some((motion, rate)))
     }
 
     /// The next step: along a motion on which the energy falls, up to the row that stops it. From an equilibrium it falls in both
     /// senses, and farther in that which rows stop later.
     fn along(&self, round: &Round, (motion, rate): (&Sliding, f64), is_equilibrium: bool) -> Result<Step> {
-        let u = self.displacements(&round.x, &round.alpha)?;
-        let mut reach = motion.reach(self.recovery, &u, &round.held, 1.0);
+        let u = self.displacements(&round.x, &round.alpha)?.u;
+        let mut reach = motion.reach(self.recovery, &u.at_rows, &round.held, 1.0);
         if is_equilibrium {
-            let back = motion.reach(self.recovery, &u, &round.held, -1.0);
+            let back = motion.reach(self.recovery, &u.at_rows, &round.held, -1.0);
             reach = if back > reach { -back } else { reach };
         }
         if reach.is_infinite() {
-            return Err(indefinite(self.case, &motion.v, rate)?);
+            return Err(indefinite(self.case, &motion.v.of, rate)?);
         }
         let mut next = round.followed();
         axpy(reach, &self.negative.forced(&motion.alpha), &mut next.b);
@@ -280,14 +280,14 @@ impl<'a> Search<'a, '_> {
         Ok(Step { b, x, is_trial: true })
     }
 
-    fn displacements(&self, x: &[f64], alpha: &[f64]) -> Result<ByBody> {
-        Ok(self.recovery.recover(&self.recovery.deformed(x)?, x, alpha).u)
+    fn displacements(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
+        self.recovery.recover(&self.recovery.deformed(x)?, x, alpha)
     }
 }
 
 /// The error for a motion along which the energy falls while closed rows stay closed, with the body that moves most.
-fn indefinite(case: Case, own: &ByBody, rate: f64) -> Result<Error> {
-    let (v, body, dof) = case.fastest(own)?;
+fn indefinite(case: Case, own: &Kept, rate: f64) -> Result<Error> {
+    let (v, body, dof) = case.fastest(case.locals()?.bring(own)?)?;
     let what = format!(
         "the answer is no minimum: K has negative stiffness along this motion, fastest at this dof, {rate:.1e} times the \
          resistance of closed rows"

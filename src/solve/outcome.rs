@@ -30,9 +30,10 @@ pub fn outcome(
     if outcome == Outcome::Solved && slides {
         outcome = Outcome::Marginal;
     }
-    if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.load.is_some()) {
+    if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.loads.is_some()) {
         // the certificate for the host uses the host's own load
-        ending.judgement = interrupt::never(|| recovery.judged_on(&case.data()?, &ending.recovered))?;
+        ending.judgement =
+            interrupt::never(|| recovery.judged_on(&case.data(dual.loads.clone())?, &ending.recovered))?;
         let is_marginal = taken.share > accuracy.data || !ending.judgement.certificate.passed();
         outcome = match outcome {
             Outcome::Solved if taken.share > accuracy.marginal() => Outcome::Inaccurate,

@@ -1,14 +1,17 @@
 //! If the forces of an answer leave motions free, the library returns the answer of least travel.
 
-use crate::certificate::BodyData;
+use std::sync::Arc;
+
+use crate::body::Kept;
 use crate::constraints::RowKind;
 use crate::error::{Kind, Result};
-use crate::linalg::{ByBody, Matrix};
+use crate::linalg::Matrix;
 use crate::platform::interrupt;
 use crate::qp::{AnswerFace, Solution, Verdict};
 use crate::solve::held::without_force;
+use crate::solve::local::Sizes;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
-use crate::solve::travel::{travel, Moving, OpenMotions, Rest};
+use crate::solve::travel::{travel, OpenMotions, Rest};
 
 /// The answer of least travel.
 struct AtRest {
@@ -62,9 +65,12 @@ impl<'a> Recovery<'a> {
 
     /// Rows of the dual whose forces hold nothing.
     pub fn without_force(&self, answer: &Recovered) -> Result<Vec<bool>> {
-        let load = self.scaled.load.map(|f| f * self.ready.island.unit);
         let forces = RowKind::ALL.map(|kind| answer.view().forces(kind));
-        without_force(self.ready, self.faces.qp.g_transposed, &load, forces)
+        let sizes = |push: &[f64]| {
+            let sizes = |p: usize| Sizes { push: self.of_rows(p, push) };
+            self.data.bodies.ask(sizes, &self.scaled.load.of)
+        };
+        without_force(self.ready, self.faces.qp.g_transposed, &sizes, forces)
     }
 
     /// The answer of least travel, with rows without force `held`; none if rows resist every motion. The distance
@@ -78,7 +84,7 @@ impl<'a> Recovery<'a> {
             return Ok(None);
         }
         let undetermined = free.cols;
-        let mut open = self.gaps_left(&[deformed], &[x]);
+        let mut open = self.gaps_left(&[&deformed.at_rows], &[x]);
         // (F x)_s = x_s on the springs of bodies
         let springs = open.len() - dual.springs..;
         open[springs.clone()].copy_from_slice(&x[springs]);
@@ -90,19 +96,19 @@ impl<'a> Recovery<'a> {
             }
         }
         let way = interrupt::part("least travel", || {
-            self.way_to_rest((deformed, dual.amplitudes(&alpha)), &forces, free)
+            self.way_to_rest((&deformed.of, dual.amplitudes(&alpha)), &forces, free)
         })?;
         let Some(Rest { u, amplitudes }) = way else { return Ok(None) };
         for k in 0..self.data.bodies.len() {
             dual.modes_of(k).for_each(|mode| alpha[mode] = dual.size_of(k) * amplitudes[mode]);
         }
-        Ok(Some(AtRest { recovered: Recovered { u, ..answer.clone() }, alpha, undetermined }))
+        Ok(Some(AtRest { recovered: Recovered { u: Arc::new(u), ..answer.clone() }, alpha, undetermined }))
     }
 
     /// The place of least travel along the free motions; none if rounding leaves no such place.
     fn way_to_rest(
         &self,
-        (deformed, amplitudes): (&ByBody, Vec<f64>),
+        (deformed, amplitudes): (&Kept, Vec<f64>),
         lambda: &[f64],
         mut free: Matrix,
     ) -> Result<Option<Rest>> {
@@ -111,17 +117,12 @@ impl<'a> Recovery<'a> {
             let own = dual.amplitudes(free.col(j));
             free.col_mut(j).copy_from_slice(&own);
         }
-        let moving = |(k, body): (usize, &BodyData<'a>)| Moving {
-            grounded: body.grounded,
-            modes: dual.modes_of(k),
-            null_space: body.null_space,
-            rounding: dual.rounding(),
-        };
         let contact = self.data.contact;
         let open = OpenMotions {
-            bodies: &self.data.bodies.iter().enumerate().map(moving).collect::<Vec<_>>(),
+            bodies: &self.data.bodies,
+            modes: &(0..dual.bodies()).map(|p| dual.modes_of(p)).collect::<Vec<_>>(),
+            rounding: dual.rounding(),
             amplitudes: &free,
-            metric: &self.ready.metric,
             touched: self.data.touched,
             rows: &contact.matrix,
             gaps: &contact.rhs,

@@ -1,17 +1,24 @@
 //! Loads and gaps of an island, scaled for its dual problem.
 
+use crate::body::{Distributed, Kept, Locals};
+use crate::certificate::Load;
 use crate::dual::Preconditioner;
 use crate::error::Result;
-use crate::linalg::{ByBody, Csr, Operator};
+use crate::linalg::vector::norm_max;
+use crate::linalg::{Csr, Operator};
+use crate::platform::interrupt;
 use crate::qp::{self, Qp};
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::gaps::Gaps;
+use crate::solve::local::{FromLoad, Loaded, Scale, Take, Unheld};
 
 /// Loads and gaps in the scaling of the dual.
 pub struct Scaled {
+    /// Of the host.
+    pub loads: Kept<Load>,
     /// f / 2^p
-    pub load: ByBody,
+    pub load: Distributed,
     pub gaps: Gaps,
     /// `B_p K_p+ f_p` of every body.
     pub moved: Vec<Vec<f64>>,
@@ -30,34 +37,46 @@ pub struct Scaled {
 pub struct Taken {
     /// The loads without this part, force; none if the part is so small on each body that it is removed from the
     /// resultants alone.
-    pub load: Option<ByBody>,
+    pub loads: Option<Kept<Load>>,
     /// The largest |resultant| / |load| over the groups of bodies that move together.
     pub share: f64,
 }
 
+/// `B_p K_p+ f_p` of every body, and e.
+fn of_load(bodies: &Locals, load: &Kept) -> Result<(Vec<Vec<f64>>, Vec<f64>)> {
+    let answers = bodies.ask(|_| FromLoad, load)?.into_iter();
+    let (moved, resultants): (_, Vec<_>) = answers.map(|of| (of.moved, of.resultants)).unzip();
+    Ok((moved, resultants.concat()))
+}
+
 impl Scaled {
-    /// `load`: f / 2^p; `moved`: `B_p K_p+ f_p`.
-    pub fn new(ready: &Ready, load: ByBody, moved: Vec<Vec<f64>>, gaps: Gaps) -> Self {
-        let d = ready.dual.rhs(&moved, &gaps.dual);
-        let resultants = ready.dual.resultants(&load);
-        Self { load, gaps, moved, d, resultants, unheld: None, cleaned: None, along: Vec::new() }
+    /// `gaps`: from the largest entry of `B_p K_p+ f_p`.
+    pub fn new(case: Case, gaps: impl FnOnce(f64) -> Result<Gaps>) -> Result<Self> {
+        let (bodies, loads) = (case.locals()?, case.loads()?);
+        let load = Distributed::new(bodies.make(|_| Scale, &loads)?);
+        interrupt::check()?;
+        let (moved, resultants) = of_load(&bodies, &load.of)?;
+        let gaps = gaps(moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max))?;
+        let d = case.ready.dual.rhs(&moved, &gaps.dual);
+        Ok(Self { loads, load, gaps, moved, d, resultants, unheld: None, cleaned: None, along: Vec::new() })
     }
 
-    /// Removes the part of the loads that forces x of the dual leave and of which nothing holds a `share`: `left`, in
-    /// units of 2^p, from the loads if given, otherwise from the resultants alone.
-    pub fn take(&mut self, case: Case, x: &[f64], left: Option<&ByBody>, share: f64) -> Result<()> {
+    /// Removes the part of the loads that forces x of the dual leave and of which nothing holds a `share`: `left` from the loads if given,
+    /// otherwise from the resultants alone.
+    pub fn take(&mut self, case: Case, x: &[f64], left: Option<&Kept<Unheld>>, share: f64) -> Result<()> {
         let ready = case.ready;
         let mut held = vec![0.0; self.resultants.len()];
         self.coarse(ready).mul_transposed_add(1.0, x, &mut held);
-        self.resultants = held;
         let before = self.unheld.as_ref().map_or(0.0, |taken| taken.share);
-        let mut taken = Taken { load: None, share: share.max(before) };
+        let mut taken = Taken { loads: None, share: share.max(before) };
         if let Some(left) = left {
-            self.load.add(-1.0, left);
-            self.moved = ready.moved(case.threads(), &self.load)?;
+            let bodies = case.locals()?;
+            self.load.at_rows = bodies.change(|_| Take, &mut self.load.of, left)?.concat();
+            self.moved = of_load(&bodies, &self.load.of)?.0;
             self.d = ready.dual.rhs(&self.moved, &self.gaps.dual);
-            taken.load = Some(self.load.map(|f| f * ready.island.unit));
+            taken.loads = Some(bodies.make(|_| Loaded, (&self.load.of, &self.loads))?.1);
         }
+        self.resultants = held;
         self.unheld = Some(taken);
         Ok(())
     }

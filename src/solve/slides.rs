@@ -5,16 +5,16 @@
 //! `v = R alpha` is far larger than the deformations w slides along all its rows that have a force, `|b v| << |b| v^`, and
 //! so the answer itself shows such a motion. `v^ = D^-1 |K||v|` has no unit and does not vanish at the centre of a rotation.
 
-use crate::certificate::BodyData;
 use crate::error::Result;
 use crate::linalg::graph::joined;
-use crate::linalg::vector::{norm, ratio, weighted_norm};
+use crate::linalg::vector::{norm, ratio};
 use crate::linalg::Csr;
 use crate::numbers::linalg::WEAK;
 use crate::numbers::solve::FAR;
 use crate::platform::memory::zeros;
 use crate::qp::AnswerFace;
 use crate::setup::Ready;
+use crate::solve::local::{Along, Split};
 use crate::solve::recovery::{Ending, Recovery};
 
 const WHAT: &str = "the slides of an answer";
@@ -52,9 +52,7 @@ pub struct Slides {
 impl Recovery<'_> {
     pub fn slides(&self, ending: &Ending) -> Result<Slides> {
         let ready = self.ready;
-        let (bodies, touched) = (&self.data.bodies, self.data.touched);
-        let mut rest = ending.recovered.u.copied(WHAT)?;
-        let n = touched.len();
+        let (bodies, n) = (&self.data.bodies, self.data.touched.len());
         let mut slides = Slides {
             all: Vec::new(),
             of_body: vec![None; bodies.len()],
@@ -64,11 +62,13 @@ impl Recovery<'_> {
             amplitudes: vec![0.0; ready.dual.modes()],
             held: Vec::new(),
         };
-        let mut moves = vec![false; bodies.len()];
-        for (p, body) in bodies.iter().enumerate() {
-            moves[p] = self.split(p, body, &mut slides, rest.on_mut(p))?;
+        let (mut moves, mut rest) = (vec![false; bodies.len()], Vec::with_capacity(n));
+        for (p, parted) in bodies.ask(|_| Split, &ending.recovered.u.of)?.into_iter().enumerate() {
+            rest.extend(parted.at_rows);
+            moves[p] = parted.slides.is_some();
+            let amplitudes = &mut slides.amplitudes[ready.dual.modes_of(p)];
+            parted.slides.iter().for_each(|slides| amplitudes.copy_from_slice(slides));
         }
-        let mut rest = touched.at(&rest);
         if !moves.contains(&true) && self.scaled.along.is_empty() {
             return Ok(slides);
         }
@@ -106,12 +106,19 @@ impl Recovery<'_> {
         let (ready, rows, bodies) = (self.ready, &self.ready.rows.scaled, &self.data.bodies);
         slides.all.clear();
         slides.of_body.fill(None);
-        for (p, body) in bodies.iter().enumerate() {
-            slides.v[self.data.touched.range(p)].fill(0.0);
-            if moves[p] {
-                self.move_along(p, body, slides)?;
-            } else {
-                slides.amplitudes[ready.dual.modes_of(p)].fill(0.0);
+        let along = |p: usize| Along { a: moves[p].then(|| self.of_modes(p, &slides.amplitudes)) };
+        for (p, moved) in bodies.ask(along, ())?.into_iter().enumerate() {
+            let range = self.data.touched.range(p);
+            match moved {
+                Some(moved) => {
+                    slides.v[range.clone()].copy_from_slice(&moved.v);
+                    slides.size[range].copy_from_slice(&moved.size);
+                    slides.loose[p] = moved.loose;
+                }
+                None => {
+                    slides.v[range].fill(0.0);
+                    slides.amplitudes[ready.dual.modes_of(p)].fill(0.0);
+                }
             }
         }
         // parts of row i on the bodies that move: body, b v, |b| v^
@@ -185,42 +192,6 @@ impl Recovery<'_> {
         }
         let rounding = self.faces.qp.rounding;
         resisting.iter().zip(size).map(|(along, size)| *along > rounding * size).collect()
-    }
-
-    /// Splits u of body p into its rigid motion, which goes to `slides`, and its deformation, which replaces u; true if the
-    /// motion is far larger. Soft bodies are held by K: they do not slide.
-    fn split(&self, p: usize, body: &BodyData, slides: &mut Slides, u: &mut [f64]) -> Result<bool> {
-        let mut amplitudes = vec![0.0; body.null_space.cols];
-        for _ in 0..2 {
-            let part = self.rigid_part(p, u);
-            body.null_space.mul_add(-1.0, &part, u);
-            amplitudes.iter_mut().zip(part).for_each(|(a, part)| *a += part);
-        }
-        let mut v = zeros(u.len(), WHAT)?;
-        body.null_space.mul_add(1.0, &amplitudes, &mut v);
-        if body.soft || self.ready.length(p, &v) <= FAR * self.ready.length(p, u) {
-            return Ok(false);
-        }
-        let (modes, size) = (self.ready.dual.modes_of(p), self.ready.dual.size_of(p));
-        slides.amplitudes[modes].iter_mut().zip(amplitudes).for_each(|(a, own)| *a = own * size);
-        Ok(true)
-    }
-
-    /// v and v^ of body p from its amplitudes.
-    fn move_along(&self, p: usize, body: &BodyData, slides: &mut Slides) -> Result<()> {
-        let (touched, metric) = (self.data.touched, self.ready.metric.on(p));
-        let (modes, size) = (self.ready.dual.modes_of(p), self.ready.dual.size_of(p));
-        let mut v = zeros(metric.len(), WHAT)?;
-        body.null_space.mul_add(1.0 / size, &slides.amplitudes[modes], &mut v);
-        let (mut image, mut terms) = (zeros(v.len(), WHAT)?, zeros(v.len(), WHAT)?);
-        body.stiffness.mul_with_terms(&v, &mut image, &mut terms)?;
-        let stiff = |j: usize| body.stiffness.metric(j, 0.0) > 0.0;
-        slides.loose[p] = weighted_norm(&v, |j| if stiff(j) { 0.0 } else { metric[j] });
-        for (j, dof) in touched.range(p).zip(touched.dofs(p)) {
-            slides.v[j] = v[dof];
-            slides.size[j] = terms[dof] / (metric[dof] * self.ready.island.unit);
-        }
-        Ok(())
     }
 }
 

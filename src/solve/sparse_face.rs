@@ -10,7 +10,9 @@
 use std::sync::Arc;
 
 use crate::body;
+use crate::body::{Distributed, Locals};
 use crate::certificate::Data;
+use crate::constraints::Touched;
 use crate::error::Result;
 use crate::linalg::by_body::Ranges;
 use crate::linalg::cholesky::{Analysis, Cholesky};
@@ -32,7 +34,9 @@ const WHAT: &str = "the matrix of a face";
 
 /// The pattern of all faces of an island.
 pub struct SparseFaces<'a> {
+    bodies: Locals<'a>,
     ranges: &'a Ranges,
+    touched: &'a Touched,
     /// B, the rows of the dual, over all unknowns.
     rows: Csr,
     compliance: &'a [f64],
@@ -104,7 +108,7 @@ impl<'a> SparseFaces<'a> {
         if (0..given.rows()).any(wide) {
             return Ok(None);
         }
-        let (touched, ranges) = (data.touched, data.ranges);
+        let (touched, ranges) = (data.touched, &ready.island.ranges);
         let mut rows = Csr::with_room(metric.len(), given.rows(), given.val.len());
         let unknown = |j: usize| ranges[touched.body_of(j)].start + touched.dof(j);
         (0..given.rows()).for_each(|i| rows.push_row(given.row(i).map(|(j, v)| (unknown(j), v))));
@@ -124,7 +128,8 @@ impl<'a> SparseFaces<'a> {
         });
         let analysis = Arc::new(Analysis::new(&k, &vec![false; metric.len()])?);
         let (least, compliance) = (least.collect(), &ready.dual.compliance[..rows.rows()]);
-        Ok(Some(Self { ranges, rows, compliance, metric, least, gram, k, analysis }))
+        let bodies = data.bodies.clone();
+        Ok(Some(Self { bodies, ranges, touched, rows, compliance, metric, least, gram, k, analysis }))
     }
 
     /// Multiplications of a factorisation.
@@ -144,7 +149,8 @@ impl<'a> SparseFaces<'a> {
 
     /// The point of an interior point method.
     pub fn inside(&self, scaled: &Scaled) -> Result<Option<Inside>> {
-        let (Gaps { dual, value, bounded, far, .. }, e) = (&scaled.gaps, scaled.load.in_sequence());
+        let (Gaps { dual, value, bounded, far, .. }, e) =
+            (&scaled.gaps, &self.bodies.bring(&scaled.load.of)?.concat());
         let m = self.rows.rows();
         let held: Vec<bool> = (0..m).map(|i| far[i] || value[i] == f64::INFINITY).collect();
         let gap: Vec<f64> = (0..m).map(|i| if held[i] { 0.0 } else { dual[i] }).collect();
@@ -201,8 +207,11 @@ impl<'a> SparseFaces<'a> {
 
 impl SparseFace<'_> {
     /// du, and dx over all rows, for residual loads and gaps in units of 2^p.
-    pub fn solve(&self, load: &ByBody, gaps: &[f64]) -> Result<(ByBody, Vec<f64>)> {
-        let mut load = copied(load.in_sequence(), WHAT)?;
+    pub fn solve(&self, load: &Distributed, gaps: &[f64]) -> Result<(ByBody, Vec<f64>)> {
+        let (mut load, at_rows) =
+            (ByBody::of(self.faces.ranges, self.faces.bodies.bring(&load.of)?.concat()), &load.at_rows);
+        self.faces.touched.set(at_rows, &mut load);
+        let mut load = load.into_sequence();
         let mut pull = zeros(gaps.len(), WHAT)?;
         self.rows.iter().for_each(|&i| pull[i] = self.weight[i] * gaps[i]);
         self.faces.rows.mul_transposed_add(1.0, &pull[..self.weight.len()], &mut load);

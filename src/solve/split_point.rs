@@ -1,15 +1,18 @@
 //! A point of the finish: forces and displacements in two doubles, corrected on one face by the residuals of the host's data.
 
-use crate::certificate::{BodyData, NOISE};
+use crate::body::{Distributed, Kept, Local};
+use crate::certificate::NOISE;
 use crate::error::Result;
-use crate::linalg::twofold::{TwofoldByBody, TwofoldVector};
-use crate::linalg::vector::axpy;
-use crate::linalg::ByBody;
+use crate::linalg::twofold::TwofoldVector;
+use crate::linalg::vector::{axpy, weighted_norm};
 use crate::numbers::solve::FAR;
 use crate::qp::friction::{Corrected, State};
 use crate::qp::Face;
 use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::gaps::Gaps;
+use crate::solve::local::{
+    Added, Begin, Correct, Deformation, Displacement, Point, PointAtRows, Residual, Rigid, Shift,
+};
 use crate::solve::recovery::{Ending, Recovery};
 
 use crate::solve::sparse_face::{Inside, SparseFace};
@@ -25,10 +28,10 @@ pub enum FaceSolver<'a> {
 /// lose its digits. v, w and x are in two doubles: where loads and forces nearly cancel, rounding of x would move v.
 #[derive(Clone)]
 pub struct SplitPoint {
-    v: TwofoldByBody,
+    /// v and w of every body.
+    point: Kept<Point>,
     /// Amplitudes of the motions that v contains.
     beta: Vec<f64>,
-    w: TwofoldByBody,
     x: TwofoldVector,
     pub alpha: Vec<f64>,
     /// A motion of a body is added to w where it is larger than v by this factor.
@@ -44,60 +47,75 @@ impl SplitPoint {
         let Ending { solution, deformed, judgement, .. } = ending;
         let modes = solution.alpha.len();
         if !judgement.certificate.passed() && !recovery.friction {
-            let (v, x) = (deformed.map(|_| 0.0), vec![0.0; solution.x.len()]);
-            return Ok(Self::at_origin(recovery, v, (x, modes), apart));
+            let x = vec![0.0; solution.x.len()];
+            return Self::begin(recovery, (&deformed.of, true), (x, modes), apart);
         }
         let deformed = recovery.deformed(&solution.x)?;
-        let mut point = Self::at_origin(recovery, deformed, (solution.x.clone(), modes), apart);
+        let mut point = Self::at_origin(recovery, &deformed.of, (solution.x.clone(), modes), apart)?;
         point.turn(recovery, &solution.alpha)?;
         Ok(point)
     }
 
-    pub fn at_origin(recovery: &Recovery, v: ByBody, (x, modes): (Vec<f64>, usize), apart: f64) -> Self {
+    pub fn at_origin(recovery: &Recovery, v: &Kept, x: (Vec<f64>, usize), apart: f64) -> Result<Self> {
+        Self::begin(recovery, (v, false), x, apart)
+    }
+
+    /// At v, or 0 if `at_rest`.
+    fn begin(
+        recovery: &Recovery,
+        (v, at_rest): (&Kept, bool),
+        (x, modes): (Vec<f64>, usize),
+        apart: f64,
+    ) -> Result<Self> {
         let corrected = vec![0.0; recovery.data.touched.len()];
-        let (w, v, x) = (v.map(|_| 0.0).into(), v.into(), x.into());
-        Self { w, v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart, corrected }
+        let (_, point) = recovery.data.bodies.make(|_| Begin { at_rest }, v)?;
+        Ok(Self { point, x: x.into(), alpha: vec![0.0; modes], beta: vec![0.0; modes], apart, corrected })
     }
 
     /// The point of an interior point method.
-    pub fn inside(recovery: &Recovery, Inside { motion, force, .. }: &Inside) -> Self {
-        let alpha = recovery.amplitudes(motion);
-        let point = Self::at_origin(recovery, motion.clone(), (force.clone(), alpha.len()), FAR);
-        Self { beta: alpha.clone(), alpha, ..point }
+    pub fn inside(recovery: &Recovery, Inside { motion, force, .. }: &Inside) -> Result<Self> {
+        let v = recovery.data.bodies.put(motion.each().map(<[f64]>::to_vec).collect())?;
+        let alpha = recovery.data.bodies.ask(|_| Rigid, &v)?.concat();
+        let point = Self::at_origin(recovery, &v, (force.clone(), alpha.len()), FAR)?;
+        Ok(Self { beta: alpha.clone(), alpha, ..point })
     }
 
-    /// Adds R a and returns R a.
-    fn turn(&mut self, recovery: &Recovery, a: &[f64]) -> Result<ByBody> {
-        let motion = recovery.ready.rigid_motion(a);
-        let apart = recovery.travels(&motion, &self.v.values(), self.apart)?;
-        for (p, apart) in apart.into_iter().enumerate() {
-            let to = if apart { &mut self.w } else { &mut self.v };
-            to.add_on(p, motion.on(p));
-            if !apart {
-                let modes = recovery.ready.dual.modes_of(p);
-                axpy(1.0, &a[modes.clone()], &mut self.beta[modes]);
-            }
+    /// Adds R a.
+    fn turn(&mut self, recovery: &Recovery, a: &[f64]) -> Result<()> {
+        let shift = |p: usize| Shift { a: recovery.of_modes(p, a), apart: self.apart };
+        let apart = recovery.data.bodies.change(shift, &mut self.point, ())?;
+        self.turned(recovery, a, apart.into_iter());
+        Ok(())
+    }
+
+    /// Of every body: whether its motion by R a is apart.
+    fn turned(&mut self, recovery: &Recovery, a: &[f64], apart: impl Iterator<Item = bool>) {
+        for (p, _) in apart.enumerate().filter(|(_, apart)| !apart) {
+            let modes = recovery.ready.dual.modes_of(p);
+            axpy(1.0, &a[modes.clone()], &mut self.beta[modes]);
         }
         axpy(1.0, a, &mut self.alpha);
-        Ok(motion)
     }
 
     /// u - R alpha
-    pub fn deformed(&self, recovery: &Recovery) -> ByBody {
-        let mut v = self.v.values();
-        v.add(-1.0, &recovery.ready.rigid_motion(&self.beta));
-        v
+    pub fn deformed(&self, recovery: &Recovery) -> Result<Distributed> {
+        let deformation = |p: usize| Deformation { beta: recovery.of_modes(p, &self.beta) };
+        Ok(Distributed::new(recovery.data.bodies.make(deformation, &self.point)?))
     }
 
     /// u
-    pub fn displacement(&self) -> ByBody {
-        let mut u = self.w.values();
-        u.add(1.0, &self.v.values());
-        u
+    pub fn displacement(&self, recovery: &Recovery) -> Result<Distributed> {
+        Ok(Distributed::new(recovery.data.bodies.make(|_| Displacement, &self.point)?))
     }
 
-    fn gaps_left(&self, recovery: &Recovery) -> Vec<f64> {
-        recovery.gaps_left(&[self.v.parts(), self.w.parts()].concat(), &self.x.parts())
+    fn gaps_left(&self, recovery: &Recovery) -> Result<Vec<f64>> {
+        let parts = recovery.data.bodies.ask(|_| PointAtRows, &self.point)?;
+        let parts = [0, 1, 2, 3].map(|k| parts.iter().flat_map(|of| &of[k]).copied().collect::<Vec<_>>());
+        Ok(recovery.gaps_left(&parts.each_ref().map(|part| &part[..]), &self.x.parts()))
+    }
+
+    fn load_left(&self, recovery: &Recovery) -> Result<Distributed> {
+        recovery.load_left(&self.point, &self.x.parts())
     }
 
     /// Sets the forces to 0 on rows outside the active set.
@@ -112,7 +130,7 @@ impl SplitPoint {
     pub fn settle(&mut self, recovery: &Recovery, face: &Face) -> Result<()> {
         let (rows, bounded) = (&recovery.ready.rows.matrix, &recovery.scaled.gaps.bounded);
         let (touched, bodies) = (recovery.data.touched, &recovery.data.bodies);
-        let of_body = |(p, body): (usize, &BodyData)| -> Vec<f64> {
+        let of_body = |(p, body): (usize, &Local)| -> Vec<f64> {
             touched.dofs(p).map(|dof| body.stiffness.metric(dof, body.unit)).collect()
         };
         let stiffness: Vec<f64> = bodies.iter().enumerate().flat_map(of_body).collect();
@@ -149,79 +167,99 @@ impl SplitPoint {
         face: FaceSolver,
     ) -> Result<f64> {
         let dual = &recovery.ready.dual;
-        let load = recovery.load_left(&self.v.parts(), &self.x.parts())?;
-        let left = self.gaps_left(recovery);
-        let (moved, forces) = match face {
+        let load = self.load_left(recovery)?;
+        let left = self.gaps_left(recovery)?;
+        let (length, forces) = match face {
             FaceSolver::Sparse(face) => {
                 let (moved, mut forces) = face.solve(&load, &left)?;
-                self.v.add(&moved);
-                let turn = recovery.amplitudes(&moved);
+                let added = |p: usize| Added { by: moved.on(p).to_vec() };
+                let added = recovery.data.bodies.change(added, &mut self.point, ())?;
+                let turn: Vec<f64> = added.iter().flat_map(|of| &of.a).copied().collect();
                 axpy(1.0, &turn, &mut self.alpha);
                 axpy(1.0, &turn, &mut self.beta);
                 // a spring of a body is its stiffness along a soft motion, which K contains
                 let first = forces.len() - dual.springs;
-
-                forces
-                    .iter_mut()
-                    .enumerate()
-                    .skip(first)
-                    .for_each(|(i, force)| *force = dual.coarse.row_dot(i, &turn));
-                (moved, forces)
+                let springs = forces.iter_mut().enumerate().skip(first);
+                springs.for_each(|(i, force)| *force = dual.coarse.row_dot(i, &turn));
+                (self.note(added.iter().map(|of| (&of.at_rows, of.length))), forces)
             }
             FaceSolver::Dense(feedback) => {
                 let face = &feedback.face;
                 let mut gaps = vec![0.0; self.x.len()];
                 face.rows().iter().for_each(|&i| gaps[i] = left[i]);
-                let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
+                let (load, (d, resultants)) = self.dual_of(recovery, load, &gaps)?;
                 let force = face.rows().iter().map(|&i| d[i]).collect();
-                let (step, turn) = feedback.solve(negative, force, &dual.resultants(&load))?;
+                let (step, turn) = feedback.solve(negative, force, &resultants)?;
                 let mut forces = vec![0.0; self.x.len()];
                 face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
                 (self.moved_by(recovery, load, (&forces, &turn))?, forces)
             }
         };
         forces.iter().enumerate().for_each(|(i, force)| self.x.add(i, *force));
-        let at = recovery.data.touched.at(&moved);
-        self.corrected.iter_mut().zip(at).for_each(|(most, by)| *most = most.max(by.abs()));
-        Ok(recovery.ready.length_of_all(&moved))
+        Ok(length)
     }
 
-    /// Adds the motion of the bodies by residual loads, the change of the forces and of the amplitudes, and returns it.
+    /// Completes the residual loads by their values where rows touch; d and e of (12)-(13) for them and these gaps.
+    fn dual_of(
+        &self,
+        recovery: &Recovery,
+        mut load: Distributed,
+        gaps: &[f64],
+    ) -> Result<(Distributed, (Vec<f64>, Vec<f64>))> {
+        let residual = |p: usize| Residual { at_rows: recovery.of_rows(p, &load.at_rows) };
+        let answers = recovery.data.bodies.change(residual, &mut load.of, ())?.into_iter();
+        let (moved, resultants): (Vec<_>, Vec<_>) = answers.map(|of| (of.moved, of.resultants)).unzip();
+        let d = recovery.ready.dual.rhs(&moved, gaps);
+        Ok((load, (d, resultants.concat())))
+    }
+
+    /// Adds the motion of the bodies by residual loads, the change of the forces and of the amplitudes; its length.
     fn moved_by(
         &mut self,
         recovery: &Recovery,
-        mut load: ByBody,
+        load: Distributed,
         (forces, turn): (&[f64], &[f64]),
-    ) -> Result<ByBody> {
-        recovery.ready.take_forces(forces, &mut load);
-        let mut moved = recovery.inverse(&load)?;
-        self.v.add(&moved);
-        moved.add(1.0, &self.turn(recovery, turn)?);
-        Ok(moved)
+    ) -> Result<f64> {
+        let at_rows = recovery.ready.without_forces(forces, load.at_rows);
+        let correct = |p: usize| Correct {
+            at_rows: recovery.of_rows(p, &at_rows),
+            a: recovery.of_modes(p, turn),
+            apart: self.apart,
+        };
+        let corrected = recovery.data.bodies.change(correct, &mut self.point, &load.of)?;
+        self.turned(recovery, turn, corrected.iter().map(|of| of.apart));
+        Ok(self.note(corrected.iter().map(|of| (&of.at_rows, of.length))))
+    }
+
+    /// Notes a correction of every body, where rows touch and its length; their length, `|.|_D`.
+    fn note<'c>(&mut self, corrections: impl Iterator<Item = (&'c Vec<f64>, f64)>) -> f64 {
+        let (at_rows, lengths): (Vec<_>, Vec<f64>) = corrections.unzip();
+        let at_rows = at_rows.into_iter().flatten();
+        self.corrected.iter_mut().zip(at_rows).for_each(|(most, by)| *most = most.max(by.abs()));
+        weighted_norm(&lengths, |_| 1.0)
     }
 
     /// A Newton step of the laws of friction for the residual loads, gaps and slips; the length of the step and the states that it
     /// assumes. None if too many rows may carry a force.
     pub fn step_with_friction(&mut self, recovery: &Recovery) -> Result<Option<(f64, Vec<State>)>> {
-        let dual = &recovery.ready.dual;
-        let gaps = self.gaps_left(recovery);
+        let gaps = self.gaps_left(recovery)?;
         let open = recovery.open_rows(&self.x.values(), &gaps)?;
         self.hold(&open);
-        let (gaps, load) = (self.gaps_left(recovery), recovery.load_left(&self.v.parts(), &self.x.parts())?);
-        let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
+        let (gaps, load) = (self.gaps_left(recovery)?, self.load_left(recovery)?);
+        let (load, (d, left)) = self.dual_of(recovery, load, &gaps)?;
         let follows: Vec<f64> = d.iter().map(|d| -d).collect();
-        let (x, left) = (self.x.values(), dual.resultants(&load));
-        let at = Corrected { x: &x, r: &gaps, follows: &follows, left: &left, stiffness: &dual.negative };
+        let (x, stiffness) = (self.x.values(), &recovery.ready.dual.negative);
+        let at = Corrected { x: &x, r: &gaps, follows: &follows, left: &left, stiffness };
         let Some(step) = recovery.friction_step(&open, at)? else { return Ok(None) };
-        let moved = self.moved_by(recovery, load, (&step.forces, &step.turn))?;
+        let length = self.moved_by(recovery, load, (&step.forces, &step.turn))?;
         step.forces.iter().enumerate().for_each(|(i, force)| self.x.add(i, *force));
-        Ok(Some((recovery.ready.length_of_all(&moved), step.states)))
+        Ok(Some((length, step.states)))
     }
 
     /// The active set by the signs of forces and gaps.
-    pub fn active(&self, recovery: &Recovery) -> Vec<bool> {
-        let (left, rows) = (self.gaps_left(recovery), &recovery.ready.rows.scaled);
-        let (u, x) = (recovery.data.touched.at(&self.displacement()), self.x.values());
+    pub fn active(&self, recovery: &Recovery) -> Result<Vec<bool>> {
+        let (left, rows) = (self.gaps_left(recovery)?, &recovery.ready.rows.scaled);
+        let (u, x) = (self.displacement(recovery)?.at_rows, self.x.values());
         let Gaps { value, bounded, .. } = &recovery.scaled.gaps;
         let terms =
             |i: usize| rows.row(i).map(|(j, v)| v.abs() * u[j].abs().max(self.corrected[j])).sum::<f64>();
@@ -230,6 +268,6 @@ impl SplitPoint {
         let leaves = |i: usize| x[i] < 0.0 || left[i] > noise(i, NOISE);
         // in two doubles a gap is known to the rounding of its row
         let stays = |i: usize| if x[i] == 0.0 { left[i] >= -noise(i, f64::EPSILON) } else { leaves(i) };
-        (0..x.len()).map(|i| bounded[i] && stays(i)).collect()
+        Ok((0..x.len()).map(|i| bounded[i] && stays(i)).collect())
     }
 }

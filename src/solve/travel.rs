@@ -8,40 +8,31 @@
 //! equality rows do not resist, exactly 0 on grounded unknowns where they are rounding. The answer is unique and does not depend
 //! on the choice of K+. No matrix over all unknowns is formed.
 
-use std::borrow::Cow;
 use std::ops::Range;
 
+use crate::body::{Distributed, Kept, Locals};
 use crate::constraints::Touched;
 use crate::error::Result;
 use crate::linalg::graph::joined;
-use crate::linalg::vector::{axpy, dot, norm_max, NOISE};
-use crate::linalg::{ByBody, Csr, Matrix};
+use crate::linalg::vector::{axpy, dot, NOISE};
+use crate::linalg::{Csr, Matrix};
 use crate::numbers::linalg::DEPENDENT;
 use crate::qp::{nearest_point, Polyhedron};
+use crate::solve::local::{FreeMotions, FreeMotionsAtRows, Place};
 
 /// The second pass removes the rounding of a long first travel.
 const PASSES: usize = 2;
 
-/// The null space of one body.
-pub struct Moving<'a> {
-    /// Its unknowns that do not move.
-    pub grounded: &'a [u32],
-    /// Its modes among all modes.
-    pub modes: Range<usize>,
-    /// `R_p`
-    pub null_space: &'a Matrix,
-    /// Its accuracy, relative to the fastest dof of each vector.
-    pub rounding: f64,
-}
-
 /// Free motions, and the rows that restrict them.
 pub struct OpenMotions<'a> {
     /// Bodies in ascending order of modes.
-    pub bodies: &'a [Moving<'a>],
+    pub bodies: &'a Locals<'a>,
+    /// The modes of each body among all modes.
+    pub modes: &'a [Range<usize>],
+    /// Accuracy of R_p, relative to the fastest dof of each vector.
+    pub rounding: f64,
     /// A: amplitudes of the null spaces, r x d.
     pub amplitudes: &'a Matrix,
-    /// D
-    pub metric: &'a ByBody,
     /// Unknowns that rows touch.
     pub touched: &'a Touched,
     /// Contact rows B over these, their gaps c (infinite: never closed), compliance C and forces lambda. Rows with
@@ -54,38 +45,37 @@ pub struct OpenMotions<'a> {
 
 /// The answer of least travel.
 pub struct Rest {
-    pub u: ByBody,
+    pub u: Distributed,
     /// Of the null spaces, over all modes.
     pub amplitudes: Vec<f64>,
 }
 
 /// The answer of least travel from `deformed` + R `amplitudes` on. Only their sum moves u: a far way there and back leaves nothing.
-pub fn travel(open: &OpenMotions, deformed: &ByBody, mut amplitudes: Vec<f64>) -> Result<Rest> {
-    let null_spaces: Vec<Cow<Matrix>> = open.bodies.iter().map(|body| open.grounded_out(body)).collect();
-    let groups = open.orthonormal(&null_spaces)?;
+pub fn travel(open: &OpenMotions, deformed: &Kept, mut amplitudes: Vec<f64>) -> Result<Rest> {
+    let (of_bodies, motions_kept) = open.bodies.make(|_| FreeMotions { rounding: open.rounding }, ())?;
+    let groups = open.orthonormal(&of_bodies)?;
     let of_motion: Vec<(usize, usize)> = groups
         .iter()
         .enumerate()
         .flat_map(|(g, group)| (0..group.motions.cols).map(move |j| (g, j)))
         .collect();
-    let motions = open.along_rows(&null_spaces, &groups);
-    let placed = |amplitudes: &[f64]| {
-        let mut u = deformed.clone();
-        for (p, (body, null_space)) in open.bodies.iter().zip(&null_spaces).enumerate() {
-            null_space.mul_add(1.0, &amplitudes[body.modes.clone()], u.on_mut(p));
-        }
-        u
+    let motions = open.along_rows(&of_bodies, &groups);
+    // u, and R'D u over all modes
+    let placed = |amplitudes: &[f64]| -> Result<(Distributed, Vec<f64>)> {
+        let place = |p: usize| Place { a: amplitudes[open.modes[p].clone()].to_vec() };
+        let (answers, of) = open.bodies.make(place, (&motions_kept, deformed))?;
+        let (at_rows, spent): (Vec<_>, Vec<_>) = answers.into_iter().unzip();
+        Ok((Distributed::new((at_rows, of)), spent.concat()))
     };
-    let mut u = placed(&amplitudes);
+    let (mut u, mut spent) = placed(&amplitudes)?;
     for _ in 0..PASSES {
-        let spent = open.projections(&null_spaces, &u);
         let target: Vec<f64> = of_motion.iter().map(|&(g, j)| -groups[g].dot(j, &spent)).collect();
-        let (gap, noise) = open.left(&u);
+        let (gap, noise) = open.left(&u.at_rows);
         let within =
             Polyhedron { rows: &motions, gap: &gap, target: &target, noise: &noise, rounding: NOISE };
         let a = nearest_point(within)?.point;
         of_motion.iter().zip(&a).for_each(|(&(g, j), a)| groups[g].add(*a, j, &mut amplitudes));
-        u = placed(&amplitudes);
+        (u, spent) = placed(&amplitudes)?;
     }
     Ok(Rest { u, amplitudes })
 }
@@ -113,37 +103,12 @@ impl MotionGroup {
 }
 
 impl OpenMotions<'_> {
-    /// `R_p`, exactly 0 on grounded unknowns where it is rounding. Unknowns that hang softly on stiff ones move with them.
-    fn grounded_out<'b>(&self, body: &Moving<'b>) -> Cow<'b, Matrix> {
-        let mut null_space = Cow::Borrowed(body.null_space);
-        for j in 0..body.null_space.cols {
-            let rounding = body.rounding * norm_max(body.null_space.col(j));
-            for i in body.grounded.iter().map(|i| *i as usize) {
-                if null_space.get(i, j).abs() <= rounding {
-                    null_space.to_mut().set(i, j, 0.0);
-                }
-            }
-        }
-        null_space
-    }
-
-    /// `R_p'D v` of every body, over all modes.
-    fn projections(&self, null_spaces: &[Cow<Matrix>], v: &ByBody) -> Vec<f64> {
-        let mut all = vec![0.0; self.amplitudes.rows];
-        let bodies = self.bodies.iter().zip(null_spaces).enumerate();
-        for (p, (body, null_space)) in bodies.filter(|(_, (body, _))| !body.modes.is_empty()) {
-            let weighted: Vec<f64> = self.metric.on(p).iter().zip(v.on(p)).map(|(d, v)| d * v).collect();
-            all[body.modes.clone()].copy_from_slice(&null_space.mul_transposed(&weighted));
-        }
-        all
-    }
-
     /// Motions in groups that share bodies, `A'R'D R A = I`.
-    fn orthonormal(&self, null_spaces: &[Cow<Matrix>]) -> Result<Vec<MotionGroup>> {
-        let (a, mut moved_by) = (self.amplitudes, vec![Vec::new(); self.bodies.len()]);
+    fn orthonormal(&self, of_bodies: &[FreeMotionsAtRows]) -> Result<Vec<MotionGroup>> {
+        let (a, mut moved_by) = (self.amplitudes, vec![Vec::new(); self.modes.len()]);
         for j in 0..a.cols {
-            for (moved, body) in moved_by.iter_mut().zip(self.bodies) {
-                if a.col(j)[body.modes.clone()].iter().any(|v| *v != 0.0) {
+            for (moved, modes) in moved_by.iter_mut().zip(self.modes) {
+                if a.col(j)[modes.clone()].iter().any(|v| *v != 0.0) {
                     moved.push(j);
                 }
             }
@@ -156,7 +121,7 @@ impl OpenMotions<'_> {
         }
         let (mut done, mut first) = (Vec::with_capacity(count), 0);
         for (bodies, columns) in groups {
-            let group = self.orthonormal_group(null_spaces, &bodies, &columns, first)?;
+            let group = self.orthonormal_group(of_bodies, &bodies, &columns, first)?;
             first += group.motions.cols;
             done.push(group);
         }
@@ -165,16 +130,17 @@ impl OpenMotions<'_> {
 
     fn orthonormal_group(
         &self,
-        null_spaces: &[Cow<Matrix>],
+        of_bodies: &[FreeMotionsAtRows],
         bodies: &[usize],
         columns: &[usize],
         first: usize,
     ) -> Result<MotionGroup> {
-        let modes: Vec<usize> = bodies.iter().flat_map(|&p| self.bodies[p].modes.clone()).collect();
+        let modes: Vec<usize> = bodies.iter().flat_map(|&p| self.modes[p].clone()).collect();
         let (mut grams, mut start) = (Vec::with_capacity(bodies.len()), 0);
         for &p in bodies {
-            grams.push((start, self.gram(p, &null_spaces[p])?));
-            start += null_spaces[p].cols;
+            let gram = &of_bodies[p].gram;
+            grams.push((start, gram));
+            start += gram.cols;
         }
         // R'D R a
         let image = |a: &[f64]| -> Vec<f64> {
@@ -206,37 +172,26 @@ impl OpenMotions<'_> {
         Ok(MotionGroup { modes, motions, first })
     }
 
-    /// `R_p'D R_p`
-    fn gram(&self, p: usize, null_space: &Matrix) -> Result<Matrix> {
-        let metric = self.metric.on(p);
-        let mut gram = Matrix::zeros(null_space.cols, null_space.cols)?;
-        for j in 0..null_space.cols {
-            let weighted: Vec<f64> = null_space.col(j).iter().zip(metric).map(|(r, d)| r * d).collect();
-            gram.col_mut(j).copy_from_slice(&null_space.mul_transposed(&weighted));
-        }
-        Ok(gram)
-    }
-
     /// `B N` without entries that are rounding; rows with lambda > 0 are empty.
-    fn along_rows(&self, null_spaces: &[Cow<Matrix>], groups: &[MotionGroup]) -> Csr {
+    fn along_rows(&self, of_bodies: &[FreeMotionsAtRows], groups: &[MotionGroup]) -> Csr {
         let modes = self.amplitudes.rows;
         let (mut at, mut fastest) = (vec![None; modes], vec![0.0; modes]);
         for (g, group) in groups.iter().enumerate() {
             group.modes.iter().enumerate().for_each(|(k, &mode)| at[mode] = Some((g, k)));
         }
-        for (body, null_space) in self.bodies.iter().zip(null_spaces) {
-            body.modes.clone().enumerate().for_each(|(j, mode)| fastest[mode] = norm_max(null_space.col(j)));
+        for (modes, of_body) in self.modes.iter().zip(of_bodies) {
+            modes.clone().zip(&of_body.fastest).for_each(|(mode, of)| fastest[mode] = *of);
         }
         let mut all = Csr::empty(groups.iter().map(|group| group.motions.cols).sum());
         for i in 0..self.rows.rows() {
             // terms of `b_i R`: mode, value, accuracy
             let mut terms: Vec<(usize, f64, f64)> = Vec::new();
             for (unknown, b) in self.rows.row(i).filter(|_| self.lambda[i] <= 0.0) {
-                let (p, dof) = (self.touched.body_of(unknown), self.touched.dof(unknown));
-                let body = &self.bodies[p];
-                for (j, mode) in body.modes.clone().enumerate().filter(|(_, mode)| at[*mode].is_some()) {
-                    let value = b * null_spaces[p].get(dof, j);
-                    let known = body.rounding.max(NOISE) * b.abs() * fastest[mode];
+                let p = self.touched.body_of(unknown);
+                let place = unknown - self.touched.range(p).start;
+                for (j, mode) in self.modes[p].clone().enumerate().filter(|(_, mode)| at[*mode].is_some()) {
+                    let value = b * of_bodies[p].at_rows.get(place, j);
+                    let known = self.rounding.max(NOISE) * b.abs() * fastest[mode];
                     match terms.iter_mut().find(|term| term.0 == mode) {
                         Some(term) => (term.1, term.2) = (term.1 + value, term.2 + known),
                         None => terms.push((mode, value, known)),
@@ -248,15 +203,14 @@ impl OpenMotions<'_> {
         all
     }
 
-    /// `c + C lambda - B u` and its rounding; rows with lambda > 0 and infinite gaps do not restrict.
-    fn left(&self, u: &ByBody) -> (Vec<f64>, Vec<f64>) {
-        let u = self.touched.at(u);
+    /// `c + C lambda - B u` and its rounding, u where rows touch; rows with lambda > 0 and infinite gaps do not restrict.
+    fn left(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut gaps, mut noise) = (vec![f64::INFINITY; self.rows.rows()], vec![0.0; self.rows.rows()]);
         let restricts = |i: &usize| self.lambda[*i] <= 0.0 && self.gaps[*i] < f64::INFINITY;
         for i in (0..self.rows.rows()).filter(restricts) {
             let yielded = self.compliance[i] * self.lambda[i];
-            gaps[i] = self.gaps[i] + yielded - self.rows.row_dot(i, &u);
-            noise[i] = NOISE * (self.gaps[i].abs() + yielded.abs() + self.rows.row_dot_abs(i, &u));
+            gaps[i] = self.gaps[i] + yielded - self.rows.row_dot(i, u);
+            noise[i] = NOISE * (self.gaps[i].abs() + yielded.abs() + self.rows.row_dot_abs(i, u));
         }
         (gaps, noise)
     }

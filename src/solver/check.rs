@@ -63,14 +63,17 @@ impl Problem {
         for ready in &prepared.done(model)?.islands {
             let island = &ready.island;
             let own = island.gather(model, u)?;
-            let equalities =
-                ready.whole.as_ref().map_or(&island.equalities, |whole| &whole.island.equalities);
+            let equalities = ready.whole().map_or(&island.equalities, |whole| &whole.island.equalities);
             let (lambda, mu) = (island.contact.gather(lambda), equalities.gather(mu));
             let tangential = island.friction.tangential.gather(tangential);
+            let case = Case { model, prepared, ready, method: None };
+            let data = case.data(case.loads()?)?;
+            let at_rows: Vec<f64> =
+                data.bodies.iter().zip(&own).flat_map(|(body, u)| body.at_rows(u)).collect();
+            let (u, at_rows) = (&data.bodies.put(own)?, &at_rows[..]);
             let answer =
-                certificate::Candidate { u: &own, lambda: &lambda, mu: &mu, tangential: &tangential };
-            let data = Case { model, prepared, ready, method: None }.data()?;
-            let judged = match &ready.whole {
+                certificate::Candidate { u, at_rows, lambda: &lambda, mu: &mu, tangential: &tangential };
+            let judged = match ready.whole() {
                 None => certify(&data, answer)?,
                 Some(whole) => whole.judged(model, &data, answer)?,
             };

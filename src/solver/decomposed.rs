@@ -62,7 +62,7 @@ pub fn answer_of_host(
 /// The island of a body in terms of the host's bodies, if it contains pieces.
 fn whole_of<'a>(prepared: &'a Prepared, parts: &Parts, body: usize) -> Option<&'a Whole> {
     let duals = prepared.made_last()?;
-    duals.islands[duals.island_of[parts.first[body]]].whole.as_deref()
+    duals.islands[duals.island_of[parts.first[body]]].whole()
 }
 
 pub fn null_space_of<'a>(prepared: &'a Prepared, parts: &Parts, body: usize) -> Option<&'a Matrix> {

@@ -7,6 +7,8 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Operator};
 use crate::platform::memory::zeros;
 use crate::setup::{Inverse, Island};
+use crate::solve::local::{FromLoad, Scale};
+use crate::solve::Case;
 use crate::solver::decomposed::null_space_of;
 use crate::solver::problem::Problem;
 
@@ -120,9 +122,10 @@ impl Problem {
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
         let contact = self.model.contact.len();
         for ready in &self.prepared.done(&self.model)?.islands {
-            let mut load = ready.island.loads(self.solved())?;
-            load.change(|f| *f /= ready.island.unit);
-            let moved = ready.moved(self.model.threads(), &load)?;
+            let case = Case { model: self.solved(), prepared: &self.prepared, ready, method: None };
+            let bodies = case.locals()?;
+            let (_, load) = bodies.make(|_| Scale, &case.loads()?)?;
+            let moved: Vec<_> = bodies.ask(|_| FromLoad, &load)?.into_iter().map(|of| of.moved).collect();
             let moved = ready.dual.rhs(&moved, &vec![0.0; ready.rows.groups()]);
             for (i, length) in ready.rows.scaling.lengths_to_host(&moved) {
                 in_stack(&ready.island, contact, i).into_iter().for_each(|at| d[at] += length);

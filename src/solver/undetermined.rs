@@ -7,7 +7,8 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::Csr;
 use crate::platform::memory::zeros;
 use crate::qp::AnswerFace;
-use crate::solve::without_force;
+use crate::solve::local::{Scale, Sizes};
+use crate::solve::{without_force, Case};
 use crate::solver::findings::rigid_motion;
 use crate::solver::problem::Problem;
 
@@ -35,9 +36,9 @@ impl Problem {
             return Err(Error::argument("k", what).index(k as i64).limit(all.len() as f64));
         };
         let ready = &self.prepared.done(&self.model)?.islands[*island];
-        let own = ready.rigid_motion(amplitudes);
+        let own = ready.rigid_motion(amplitudes)?;
         let mut v = zeros(self.solved().sizes().dofs, "an open motion")?;
-        ready.island.scatter(self.solved(), &own, &mut v);
+        ready.island.scatter(self.solved(), own, &mut v);
         if let Some(parts) = self.parts() {
             v = parts.mean(&v)?;
         }
@@ -67,8 +68,12 @@ impl Problem {
             let tangential = ready.island.friction.tangential.gather(&answer.tangential);
             let dual = &ready.dual;
             let coarse = cleaned.as_deref().unwrap_or(&dual.coarse);
-            let load = ready.island.loads(self.solved())?;
-            let held = without_force(ready, coarse, &load, [&lambda, &mu, &tangential])?;
+            let case = Case { model: self.solved(), prepared: &self.prepared, ready, method: None };
+            let (bodies, touched) = (case.locals()?, &ready.island.touched);
+            let (_, scaled) = bodies.make(|_| Scale, &case.loads()?)?;
+            let sizes =
+                |push: &[f64]| bodies.ask(|p| Sizes { push: push[touched.range(p)].to_vec() }, &scaled);
+            let held = without_force(ready, coarse, &sizes, [&lambda, &mu, &tangential])?;
             let motions = AnswerFace::new(coarse, &dual.blocks, &held, dual.rounding())?.undetermined()?;
             all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));
         }

@@ -9,9 +9,24 @@ use crate::ranks::{damaged, message, value, wire_enum, wire_struct, Asked, Ranks
 /// Requests of this number are lists of questions about bodies; the answer is the list of answers, each perhaps an error.
 pub const ABOUT_BODIES: u32 = 1;
 
-/// What rank 0 asks about a body: a closed list. `kplus`, `form`: names of what is kept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Question {
+/// Lists the names once, for their numbers and their texts.
+macro_rules! names {
+    ($($(#[$doc:meta])* $name:ident),+ $(,)?) => {
+        /// What rank 0 asks about a body: a closed list.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Name {
+            $($(#[$doc])* $name),+
+        }
+
+        wire_enum!(Name { $($name),+ });
+
+        impl Name {
+            pub const ALL: &[Self] = &[$(Self::$name),+];
+        }
+    };
+}
+
+names! {
     /// `Factorise`: keep a K+. Answer: `Made`.
     Factorise,
     /// [`Assemble`]: keep `B K+ B'`. Answer: nothing.
@@ -22,9 +37,43 @@ pub enum Question {
     Entries,
     /// [`Solve`]. Answer: `K+ x`.
     Solve,
+    /// `Join`: keep a body of an island. Answer: nothing. The names below are questions about such a body (`local::Question`).
+    Join,
+    Put,
+    Bring,
+    Fit,
+    Measure,
+    Largest,
+    Lend,
+    LoadOf,
+    Scale,
+    FromLoad,
+    Take,
+    Loaded,
+    Displace,
+    Turn,
+    Slide,
+    Begin,
+    Shift,
+    Strained,
+    Residual,
+    Correct,
+    Added,
+    PointAtRows,
+    Displacement,
+    Deformation,
+    Rigid,
+    Split,
+    Along,
+    FreeMotions,
+    Place,
+    Energy,
+    Negate,
+    Sizes,
+    Left,
+    Proof,
+    Work,
 }
-
-wire_enum!(Question { Factorise, Assemble, Multiply, Entries, Solve });
 
 /// `B K+ B'` is assembled if `explicit`; otherwise K+ and B are kept.
 pub struct Assemble {
@@ -65,10 +114,16 @@ pub struct Asking {
 }
 
 impl Asking {
-    pub fn new(rank: usize, question: Question, of: &impl Wire) -> Self {
-        let mut message = message(&question);
+    pub fn new(rank: usize, name: Name, of: &impl Wire) -> Self {
+        let mut message = message(&name);
         of.put(&mut message);
         Self { rank, message }
+    }
+
+    /// The same question with more that is asked.
+    pub fn and(mut self, more: &impl Wire) -> Self {
+        more.put(&mut self.message);
+        self
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod asking;
 
-pub use asking::{ask, Asking, Assemble, Entries, Multiply, Owed, Question, Solve, ABOUT_BODIES};
+pub use asking::{ask, Asking, Assemble, Entries, Multiply, Name, Owed, Solve, ABOUT_BODIES};
 
 use std::sync::Arc;
 
@@ -61,12 +61,12 @@ impl Elsewhere {
     pub fn operator(&self, rows: &Arc<Csr>, explicit: bool) -> (Asking, FormElsewhere) {
         let (token, order) = (self.kplus.ranks.token(self.rank()), rows.rows());
         let of = Assemble { kplus: self.name(), form: token.number, explicit, rows: Arc::clone(rows) };
-        (Asking::new(self.rank(), Question::Assemble, &of), FormElsewhere { token, order, explicit })
+        (Asking::new(self.rank(), Name::Assemble, &of), FormElsewhere { token, order, explicit })
     }
 
     /// The question for `K+ x`; not `exact`: by the factor alone.
     pub fn solving(&self, exact: bool, x: Vec<f64>) -> Asking {
-        Asking::new(self.rank(), Question::Solve, &Solve { kplus: self.name(), exact, x })
+        Asking::new(self.rank(), Name::Solve, &Solve { kplus: self.name(), exact, x })
     }
 
     /// Asks questions about several bodies.
@@ -82,13 +82,13 @@ impl FormElsewhere {
 
     /// The question for the product with x; not `exact`: by a rounded factor alone.
     pub fn multiplying(&self, exact: bool, x: Vec<f64>) -> Asking {
-        Asking::new(self.token.rank, Question::Multiply, &Multiply { form: self.token.number, exact, x })
+        Asking::new(self.token.rank, Name::Multiply, &Multiply { form: self.token.number, exact, x })
     }
 
     /// The entries of these rows and columns.
     pub fn block(&self, rows: Vec<usize>) -> Result<Packed> {
         let of = Entries { form: self.token.number, rows };
-        alone(&self.token, Asking::new(self.token.rank, Question::Entries, &of))
+        alone(&self.token, Asking::new(self.token.rank, Name::Entries, &of))
     }
 }
 

@@ -1,15 +1,19 @@
 //! Bodies lent to other ranks: rank 0 sends their plans (`Lending`), the other ranks make and keep K+ (`Bodies`) and tell what rank 0
 //! has to know of it (`Made`).
 
+mod asked;
 mod kept;
 mod made;
+mod member;
 
+pub use asked::{asked, Answering};
 pub use kept::Bodies;
 pub use made::Made;
+pub use member::Join;
 
 use std::sync::Arc;
 
-use crate::body::elsewhere::{ask, Asking, Elsewhere, Owed, Question};
+use crate::body::elsewhere::{ask, Asking, Elsewhere, Name, Owed};
 use crate::body::plan::Plan;
 use crate::error::Result;
 use crate::ranks::{wire_struct, Ranks, Token, Traffic};
@@ -56,6 +60,12 @@ impl Lending {
         ask(&self.ranks, questions)
     }
 
+    /// The question for a body of an island whose K+ is there, and its name.
+    pub fn joining(&self, of: &Elsewhere, join: impl FnOnce(u64, u64) -> Join) -> (Asking, Token) {
+        let token = self.ranks.token(of.rank());
+        (Asking::new(of.rank(), Name::Join, &join(token.number, of.name())), token)
+    }
+
     /// The question for a K+ by this plan, and its name: with the factor of `of` if given; otherwise with one of its own, which may be
     /// `rounded`.
     pub fn factorising(
@@ -67,6 +77,6 @@ impl Lending {
     ) -> (Asking, Arc<Token>) {
         let token = Arc::new(self.ranks.token(rank));
         let (kplus, of, plan) = (token.number, of.map(Elsewhere::name), Arc::clone(plan));
-        (Asking::new(rank, Question::Factorise, &Factorise { kplus, of, rounded, plan }), token)
+        (Asking::new(rank, Name::Factorise, &Factorise { kplus, of, rounded, plan }), token)
     }
 }

@@ -3,8 +3,7 @@
 use super::nodes::DenseNode;
 use super::*;
 use crate::linalg::vector::power_of_two_below;
-use crate::linalg::{Csr, Symmetric};
-use std::sync::Arc;
+use crate::linalg::{Csr, Matrix, Symmetric};
 
 pub const LIMIT: f64 = 1e-8;
 
@@ -189,35 +188,38 @@ impl DenseModel {
             end += part.k.len();
             end - part.k.len()..end
         });
-        let ranges: Ranges = Arc::new(ranges.collect());
+        let ranges: Vec<_> = ranges.collect();
+        let touched = Touched::of(&ranges, 0..n);
         let (tangential, nodes) = (Self::rows(&self.tangential(), n), self.laws());
         let mut bodies = Vec::new();
         for (p, part) in self.parts.iter().enumerate() {
-            bodies.push(BodyData {
+            bodies.push(Local {
                 stiffness: (&matrices[p]).into(),
-                load: Some(&part.load),
-                whole: LoadOfWhole::default(),
                 null_space: &spaces[p],
                 soft: false,
                 unit: part.unit(),
                 grounded: &grounded[p],
+                touched: touched.on(p),
+                dual: None,
             });
         }
+        let load = |part: &DenseBody| Load { own: Some(part.load.clone().into()), ..Load::default() };
         let data = Data {
-            bodies,
-            ranges: &ranges,
-            touched: &Touched::of(&ranges, 0..n),
+            bodies: Locals::new(bodies, &[], 1),
+            loads: Kept::of(self.parts.iter().map(load).collect()),
+            touched: &touched,
             contact: &contact,
             equalities: &equalities,
             tangential: &tangential,
             nodes: &nodes,
             limit: LIMIT,
             accuracy: 1e-10,
+            unit: None,
         };
         let none = vec![0.0; tangential.len()];
         let tangential = if point.tangential.is_empty() { &none } else { &point.tangential };
-        let u = ByBody::of(&ranges, point.u.clone());
-        let answer = Candidate { u: &u, lambda: &point.lambda, mu: &point.mu, tangential };
+        let u = Kept::of(ranges.iter().map(|range| point.u[range.clone()].to_vec()).collect());
+        let answer = Candidate { u: &u, at_rows: &point.u, lambda: &point.lambda, mu: &point.mu, tangential };
         certify(&data, answer).unwrap()
     }
 

@@ -6,12 +6,12 @@ mod null_space;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::body::GeneralizedInverse;
-use crate::certificate::{certify, grounded, BodyData, Candidate, Data, Judgement, LoadOfWhole};
+use crate::body::{GeneralizedInverse, Kept, Local, Locals};
+use crate::certificate::{certify, grounded, Candidate, Data, Judgement, Load, LoadOf, LoadOfWhole};
 use crate::constraints::{RowKind, RowSet, Touched};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::power_of_two_below;
-use crate::linalg::{ByBody, Csr, Matrix};
+use crate::linalg::{Csr, Matrix};
 use crate::model::{Parts, SolvedModel};
 use crate::platform::memory::{copied, reserved, zeros};
 use crate::platform::threads;
@@ -129,39 +129,37 @@ impl Whole {
 
     /// The judgement of an answer of the pieces by bodies and rows of the host; `data`: the pieces with their loads.
     pub fn judged(&self, model: &SolvedModel, data: &Data, answer: Candidate) -> Result<Judgement> {
-        let (u, loads) = (self.mean(answer.u)?, self.loads(data)?);
+        let (u, loads) = (self.mean(&data.bodies, answer.u)?, self.loads(data)?);
         let mu = &answer.mu[..self.island.equalities.numbers.len()];
-        certify(&self.data(model, &loads)?, Candidate { u: &u, mu, ..answer })
+        let data = self.data(model, loads)?;
+        let at_rows: Vec<f64> = data.bodies.iter().zip(&u).flat_map(|(body, u)| body.at_rows(u)).collect();
+        let u = Kept::of(u);
+        certify(&data, Candidate { u: &u, at_rows: &at_rows, mu, ..answer })
     }
 
     /// The weighted mean of the copies of every unknown.
-    fn mean(&self, of_pieces: &ByBody) -> Result<ByBody> {
-        self.gathered(of_pieces.each(), |share| share)
+    fn mean(&self, pieces: &Locals, v: &Kept) -> Result<Vec<Vec<f64>>> {
+        self.gathered(&pieces.bring(v)?, |share| share)
     }
 
     /// The sum of the loads of the copies of every unknown.
-    fn loads(&self, data: &Data) -> Result<ByBody> {
-        let none = zeros(data.bodies.iter().map(|body| body.stiffness.order()).max().unwrap_or(0), WHAT)?;
-        let of_pieces = data.bodies.iter().map(|body| body.load.unwrap_or(&none[..body.stiffness.order()]));
-        self.gathered(of_pieces, |_| 1.0)
+    fn loads(&self, data: &Data) -> Result<Vec<Vec<f64>>> {
+        self.gathered(&data.bodies.ask(|_| LoadOf, &data.loads)?, |_| 1.0)
     }
 
-    fn gathered<'v>(
-        &self,
-        of_pieces: impl Iterator<Item = &'v [f64]>,
-        weight: fn(f64) -> f64,
-    ) -> Result<ByBody> {
+    fn gathered<O: AsRef<[f64]>>(&self, of_pieces: &[O], weight: fn(f64) -> f64) -> Result<Vec<Vec<f64>>> {
         let mut all = zeros(self.island.unknowns(), WHAT)?;
-        self.place.iter().zip(of_pieces.flatten()).for_each(|((j, share), v)| all[*j] += weight(*share) * v);
-        Ok(ByBody::of(&self.island.ranges, all))
+        let of_pieces = of_pieces.iter().flat_map(|own| own.as_ref());
+        self.place.iter().zip(of_pieces).for_each(|((j, share), v)| all[*j] += weight(*share) * v);
+        self.island.ranges.iter().map(|range| copied(&all[range.clone()], WHAT)).collect()
     }
 
     /// The data of the island for the certificate.
-    fn data<'a>(&'a self, model: &'a SolvedModel, loads: &'a ByBody) -> Result<Data<'a>> {
+    fn data<'a>(&'a self, model: &'a SolvedModel, loads: Vec<Vec<f64>>) -> Result<Data<'a>> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
         let parts = model.parts.as_ref().ok_or_else(missing)?;
         let mut bodies = reserved(self.bodies.len(), WHAT)?;
-        for ((&body, own), load) in self.island.bodies.iter().zip(&self.bodies).zip(loads.each()) {
+        for (k, (&body, own)) in self.island.bodies.iter().zip(&self.bodies).enumerate() {
             let stiffness = match (&parts.assembled[body], own.part) {
                 (Some(k), _) => Some(crate::body::Stiffness::Assembled(k)),
                 (None, Some(part)) => model.bodies[part].body.k(),
@@ -169,19 +167,20 @@ impl Whole {
             };
             let stiffness = stiffness.ok_or_else(missing)?;
             let largest = stiffness.largest_diagonal();
-            bodies.push(BodyData {
+            bodies.push(Local {
                 stiffness,
-                load: Some(load),
-                whole: LoadOfWhole::default(),
                 null_space: own.null_space.vectors(),
                 soft: own.soft,
                 unit: if largest > 0.0 { power_of_two_below(largest) } else { self.island.unit },
                 grounded: &own.grounded,
+                touched: self.island.touched.on(k),
+                dual: None,
             });
         }
+        let load = |own: Vec<f64>| Load { own: Some(own.into()), whole: LoadOfWhole::default() };
         Ok(Data {
-            bodies,
-            ranges: &self.island.ranges,
+            bodies: Locals::new(bodies, &[], model.threads()),
+            loads: Kept::of(loads.into_iter().map(load).collect()),
             touched: &self.island.touched,
             contact: &self.island.contact.rows,
             equalities: &self.island.equalities.rows,
@@ -189,6 +188,7 @@ impl Whole {
             nodes: &self.island.friction.nodes,
             limit: model.settings.certificate_tolerance,
             accuracy: model.settings.data_accuracy,
+            unit: None,
         })
     }
 

@@ -159,9 +159,10 @@ impl<'a> Contradictions<'a> {
         if let Some(metric) = self.metric.get() {
             return Ok(metric);
         }
-        let data = self.case.data()?;
-        let rows = RowKind::ALL.map(|kind| data.rows(kind));
-        let metric = led(&data.metered(), data.touched, rows, &|_, _| true, self.case.ready.island.unit)?;
+        let (bodies, island) = (self.case.locals()?, self.case.island());
+        let bodies: Vec<_> = bodies.iter().map(|body| (body.stiffness, body.unit)).collect();
+        let rows = RowKind::ALL.map(|kind| &island.members(kind).rows);
+        let metric = led(&bodies, &island.touched, rows, &|_, _| true, island.unit)?;
         Ok(self.metric.get_or_init(|| metric))
     }
 

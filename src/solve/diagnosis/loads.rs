@@ -1,12 +1,12 @@
 //! Loads that no forces of the rows hold: how large their share is, on which bodies they act, and whether this is proved.
 
+use crate::body::Kept;
 use crate::certificate::Data;
 use crate::constraints::{FrictionNode, RowKind};
-use crate::error::{Error, Kind, Proof, Result};
+use crate::error::{self, Error, Kind, Result};
 use crate::linalg::graph::joined;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
-use crate::linalg::ByBody;
 use crate::model::Accuracy;
 use crate::numbers::solve::{BEYOND, LOAD_RANGE};
 use crate::platform::memory::zeros;
@@ -15,18 +15,17 @@ use crate::qp::Restricted;
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::friction::cones;
+use crate::solve::local::{self, Left, Proof, Sizes, SizesLeft};
 use crate::solve::scaled::Scaled;
 
 /// The part of a load that the nearest forces of the rows do not hold. Bodies with such a part that are joined by
 /// equality rows or by rows with a force move together: a cluster. Shares are relative to the cluster's load, |f|_{D^-1}
 /// without grounded unknowns; to that of the host's body if the load of a part of it is rounding of that.
 pub struct Unheld {
-    /// D R c, in units of 2^p: the part not held, as a load.
-    pub load: ByBody,
+    /// D R c, in units of 2^p: the part not held, as a load; and R c, the motion that this part causes.
+    left: Kept<local::Unheld>,
     /// c over the modes of the dual.
     pub amplitudes: Vec<f64>,
-    /// R c, the motion that this part causes.
-    motion: ByBody,
     /// The forces of the dual that leave this part.
     pub x: Vec<f64>,
     /// The largest |D R c|_{D^-1} / |f|_{D^-1} of a cluster.
@@ -56,9 +55,10 @@ impl Unheld {
     /// For the forces that leave the smallest part of each body's own load, so that rounding of a large load does not act
     /// on a body with a small one; `None` without loads.
     pub fn relative(case: Case, scaled: &Scaled, far: &[bool]) -> Result<Option<Self>> {
-        let ready = case.ready;
-        let load = case.data()?.without_grounded(scaled.load.clone());
-        let sizes = ready.dual.sizes_of_loads(&load, &ready.metric);
+        let (ready, bodies) = (case.ready, case.locals()?);
+        let sizes = |p: usize| Sizes { push: vec![0.0; ready.island.touched.range(p).len()] };
+        let sizes = bodies.ask(sizes, &scaled.load.of)?;
+        let sizes = ready.dual.of_modes(sizes.iter().map(|body| body.free));
         let most = norm_max(&sizes);
         let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(LOAD_RANGE * most)).collect();
         (most > 0.0).then(|| Self::nearest(case, scaled, far, &weights)).transpose()
@@ -72,33 +72,27 @@ impl Unheld {
         let rows: Vec<usize> = (0..qp.b.len()).filter(|i| !is_far(i)).collect();
         let near = Restricted::new(qp, &rows);
         let (x, rest) = unheld(&near.qp(), &cones(ready, &scaled.gaps, &rows)?, weights)?;
-        Ok(Self::of(&case.data()?, ready, scaled, near.spread(&x), &rest))
+        Self::of(&case.data(scaled.loads.clone())?, ready, scaled, near.spread(&x), &rest)
     }
 
     /// For the forces x of the dual, which leave `rest` = e - G x.
-    fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
-        let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, &ready.metric);
-        let load = as_load(rest);
+    fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Result<Self> {
         let sizes_of_modes = ready.dual.sizes_of_modes();
         let amplitudes = rest.iter().zip(sizes_of_modes).map(|(e, size)| size * size * e).collect();
-        let mut motion = load.clone();
-        for (p, d) in ready.metric.each().enumerate() {
-            motion.on_mut(p).iter_mut().zip(d).for_each(|(f, d)| *f /= d);
-        }
-        let load = data.without_grounded(load);
-        let resultants = data.without_grounded(as_load(&scaled.resultants));
-        let (left, resultants) = (ready.forces(&load), ready.forces(&resultants));
-        let loads = ready.forces(&data.without_grounded(scaled.load.clone()));
+        let of_body = |p: usize| {
+            let own = |all: &[f64]| all[ready.dual.modes_of(p)].to_vec();
+            Left { rest: own(rest), resultants: own(&scaled.resultants) }
+        };
+        let (sizes, kept) = data.bodies.make(of_body, (&scaled.load.of, &data.loads))?;
+        let of = |of: fn(&SizesLeft) -> f64| sizes.iter().map(of).collect::<Vec<f64>>();
+        let (left, resultants, loads) =
+            (of(|body| body.left), of(|body| body.resultants), of(|body| body.load));
         let (cluster, count) = clusters(ready, &x, &left);
         let of_cluster = |k: usize, sizes: &[f64]| {
             let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
             weighted_norm(&own.collect::<Vec<_>>(), |_| 1.0)
         };
-        let unit = ready.island.unit.sqrt();
-        let told = loads.iter().zip(&data.bodies);
-        let told =
-            told.map(|(own, body)| if body.is_noise(own * unit) { body.whole.size / unit } else { *own });
-        let told: Vec<f64> = told.collect();
+        let told = of(|body| body.told);
         let of_clusters: Vec<f64> =
             (0..count).map(|k| ratio(of_cluster(k, &left), of_cluster(k, &told))).collect();
         let share_of = |p: usize| if left[p] > 0.0 { of_clusters[cluster[p]] } else { 0.0 };
@@ -117,10 +111,9 @@ impl Unheld {
         let share = shares.get(body).copied().unwrap_or(0.0);
         let loaded = (0..left.len()).filter(|&p| loads[p] > 0.0);
         let of_body = loaded.map(|p| left[p] / loads[p]).fold(0.0, f64::max);
-        Self {
-            load,
+        Ok(Self {
+            left: kept,
             amplitudes,
-            motion,
             x,
             share,
             of_body,
@@ -130,13 +123,13 @@ impl Unheld {
             shares,
             body,
             accuracy: Accuracy { data: data.accuracy },
-        }
+        })
     }
 
     /// The load to subtract from the loads; none if neither `share` nor the share of a single body exceeds rounding:
     /// then only the resultants change.
-    pub fn load_to_take(&self, share: f64) -> Option<&ByBody> {
-        (share.max(self.of_body) > self.accuracy.data).then_some(&self.load)
+    pub fn load_to_take(&self, share: f64) -> Option<&Kept<local::Unheld>> {
+        (share.max(self.of_body) > self.accuracy.data).then_some(&self.left)
     }
 
     /// Small enough to be rounding or marginal.
@@ -152,36 +145,38 @@ impl Unheld {
         if self.is_little() {
             return Ok(None);
         }
-        let (ready, island) = (case.ready, case.island());
+        let (ready, island, bodies) = (case.ready, case.island(), case.locals()?);
         let worst = self.cluster[self.body];
-        let moves: [&dyn Fn(usize) -> bool; 3] =
+        let moves: [&(dyn Fn(usize) -> bool + Sync); 3] =
             [&|p| self.cluster[p] == worst, &|p| self.shares[p] > self.accuracy.marginal(), &|p| {
                 self.shares[p] > 0.0
             }];
         for moves in moves {
-            let mut own = self.motion.clone();
-            let moved: Vec<usize> = (0..self.loads.len()).filter(|&p| moves(p)).collect();
-            (0..self.loads.len()).filter(|p| !moved.contains(p)).for_each(|p| own.on_mut(p).fill(0.0));
-            let size = weighted_norm(&moved.iter().map(|&p| self.loads[p]).collect::<Vec<_>>(), |_| 1.0);
+            let prove = |p: usize| Proof { moves: moves(p) };
+            let (answers, own) = bodies.make(prove, (&scaled.load.of, &self.left))?;
+            let loads: Vec<f64> =
+                (0..self.loads.len()).filter(|&p| moves(p)).map(|p| self.loads[p]).collect();
+            let size = weighted_norm(&loads, |_| 1.0);
             let mut work = Twofold::default();
-            let loads = scaled.load.each().flatten().zip(own.each().flatten());
-            loads.for_each(|(f, v)| work.add_product(*f, *v));
-            let at = island.touched.at(&own);
-            let resisted = BEYOND * (resistance(ready, &at) + strain(case, &own)?);
+            answers.iter().for_each(|body| work.add_twofold(body.work));
+            let at: Vec<f64> = answers.iter().flat_map(|body| &body.at_rows).copied().collect();
+            let strains: Vec<f64> = answers.iter().map(|body| body.strain).collect();
+            let strain = weighted_norm(&strains, |_| 1.0) / island.unit;
+            let resisted = BEYOND * (resistance(ready, &at) + strain);
             if work.value() - bounded(ready, &at) > size * resisted {
                 let mut v = zeros(case.model.sizes().dofs, "a motion")?;
-                island.scatter(case.model, &own, &mut v);
-                let why = self.why(case, (&own, &at), work.value());
+                island.scatter(case.model, bodies.bring(&own)?, &mut v);
+                let moved: Vec<bool> = answers.iter().map(|body| body.moved).collect();
+                let why = self.why(case, (&moved, &at), work.value());
                 return Ok(Some(self.named(case, v, &why)));
             }
         }
         Ok(None)
     }
 
-    /// What the rows on the bodies that move by v do about it, v `at` the rows; `work`: f'v in units of 2^p.
-    fn why(&self, case: Case, (v, at): (&ByBody, &[f64]), work: f64) -> String {
+    /// What the rows on the bodies that have `moved` by v do about it, v `at` the rows; `work`: f'v in units of 2^p.
+    fn why(&self, case: Case, (moved, at): (&[bool], &[f64]), work: f64) -> String {
         let (ready, island) = (case.ready, case.island());
-        let moved: Vec<bool> = v.each().map(|v| v.iter().any(|v| *v != 0.0)).collect();
         let touching: Vec<usize> = (0..ready.rows.tangential)
             .filter(|&i| {
                 let (rows, k) = island.row(i);
@@ -226,8 +221,8 @@ impl Unheld {
         v.iter_mut().for_each(|v| *v /= largest);
         let dof = fastest - range.start;
         let limit = self.accuracy.marginal();
-        let error = Error::new(Kind::LoadNotHeld, what).body(body).dof(dof).value(self.share).limit(limit);
-        error.proved_by(Proof::Motion { margin: self.margin, v })
+        let refusal = Error::new(Kind::LoadNotHeld, what).body(body).dof(dof).value(self.share).limit(limit);
+        refusal.proved_by(error::Proof::Motion { margin: self.margin, v })
     }
 }
 
@@ -273,13 +268,4 @@ fn along(ready: &Ready, i: usize, v: &[f64]) -> f64 {
     let ((rows, k), mut sum) = (ready.island.row(i), Twofold::default());
     rows.matrix.row(k).for_each(|(j, b)| sum.add_product(b, v[j]));
     sum.value()
-}
-
-/// `|K v|_{D^-1}` in units of 2^p.
-fn strain(case: Case, v: &ByBody) -> Result<f64> {
-    let mut strained = ByBody::zeros(&case.island().ranges, "the strain of a motion")?;
-    for (p, body) in case.data()?.bodies.iter().enumerate() {
-        body.stiffness.mul(v.on(p), strained.on_mut(p))?;
-    }
-    Ok(case.ready.force_of_all(&strained) / case.island().unit)
 }

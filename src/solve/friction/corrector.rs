@@ -2,7 +2,6 @@
 //! carry a force.
 
 use crate::error::Result;
-use crate::linalg::ByBody;
 use crate::qp::friction::{newton_step, slipping, without_force, Corrected, FrictionProblem, State};
 use crate::qp::{DirectOnRows, Restricted};
 use crate::solve::friction::laws::cones;
@@ -23,7 +22,7 @@ impl Recovery<'_> {
     }
 
     /// The rows whose forces do not respond to motions of an answer: those without a force, and of nodes that slip.
-    pub fn held_with_friction(&self, u: &ByBody, x: &[f64]) -> Result<Vec<bool>> {
+    pub fn held_with_friction(&self, u: &[f64], x: &[f64]) -> Result<Vec<bool>> {
         let (rows, gaps) = ((0..x.len()).collect::<Vec<_>>(), self.gaps_left(&[u], &[x]));
         let cones = cones(self.ready, &self.scaled.gaps, &rows)?;
         let mut held = without_force(&cones, x, &gaps);

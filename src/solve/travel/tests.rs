@@ -1,7 +1,35 @@
 use super::*;
-use crate::linalg::by_body::Ranges;
+use crate::body::{GeneralizedInverse, Local, LocalDual, Modes, NullSpaceInput};
+use crate::linalg::Symmetric;
 use crate::qp::AnswerFace;
-use std::sync::Arc;
+
+/// Null space, metric, grounded unknowns.
+type OfBody<'a> = (&'a Matrix, &'a [f64], &'a [u32]);
+
+/// Runs `work` with these bodies, whose unknowns are all touched.
+fn with_bodies<T>(of: &[OfBody], work: impl FnOnce(&Locals, &Touched) -> T) -> T {
+    let (mut ranges, mut matrices) = (Vec::new(), Vec::new());
+    for (_, metric, _) in of {
+        let (n, first) = (metric.len(), ranges.last().map_or(0, |range: &Range<usize>| range.end));
+        ranges.push(first..first + n);
+        matrices.push(Symmetric::new((0..=n).collect(), (0..n as u32).collect::<Vec<_>>(), metric.to_vec()));
+    }
+    let none = |n: usize| NullSpaceInput { vectors: Matrix::zeros(n, 0).unwrap(), modes: Modes::Exact };
+    let made = |k: &Symmetric| GeneralizedInverse::plan(k.clone().into(), &none(k.order()), 1e-8)?.execute();
+    let kplus: Vec<_> = matrices.iter().map(|k| made(k).unwrap().inverse).collect();
+    let (touched, rows) = (Touched::of(&ranges, 0..ranges.last().unwrap().end), Csr::empty(0));
+    let body = |p: usize| {
+        let (null_space, metric, grounded) = of[p];
+        let dual = LocalDual { kplus: &kplus[p], rows: &rows, metric, island: 1.0, by: 1.0, size: 1.0 };
+        let (stiffness, touched, dual) = ((&matrices[p]).into(), touched.on(p), Some(dual));
+        Local { stiffness, null_space, soft: false, unit: 1.0, grounded, touched, dual }
+    };
+    work(&Locals::new((0..of.len()).map(body).collect(), &[], 1), &touched)
+}
+
+fn kept(v: &[f64], unknowns: usize) -> Kept {
+    Kept::of(v.chunks(unknowns).map(<[f64]>::to_vec).collect())
+}
 
 /// Blocks of four unknowns, (x, y) of two points, which slide along x and y and rotate; the unknowns have different
 /// weights.
@@ -21,14 +49,6 @@ impl FreeBlocks {
 
     /// The answer, its amplitudes from u on, and the dimension of the kernel.
     fn solve(&self, rows: &Csr, gaps: &[f64], lambda: &[f64], u: &[f64]) -> (Rest, usize) {
-        let bodies: Vec<Moving> = (0..self.count)
-            .map(|p| Moving {
-                grounded: &[],
-                modes: 3 * p..3 * p + 3,
-                null_space: &self.null_space,
-                rounding: 1e-14,
-            })
-            .collect();
         let mut g_transposed = Csr::empty(3 * self.count);
         for i in 0..rows.rows() {
             let mut row = vec![0.0; 3 * self.count];
@@ -39,18 +59,24 @@ impl FreeBlocks {
         }
         let held: Vec<bool> = lambda.iter().map(|lambda| *lambda <= 0.0).collect();
         let amplitudes = AnswerFace::new(&g_transposed, &[], &held, 1.5e-14).unwrap().undetermined().unwrap();
-        let ranges: Ranges = Arc::new((0..self.count).map(|p| 4 * p..4 * p + 4).collect());
-        let open = OpenMotions {
-            bodies: &bodies,
-            amplitudes: &amplitudes,
-            metric: &ByBody::of(&ranges, self.metric.clone()),
-            touched: &Touched::of(&ranges, 0..4 * self.count),
-            rows,
-            gaps,
-            compliance: &vec![0.0; gaps.len()],
-            lambda,
-        };
-        (travel(&open, &ByBody::of(&ranges, u.to_vec()), vec![0.0; 3 * self.count]).unwrap(), amplitudes.cols)
+        let modes: Vec<_> = (0..self.count).map(|p| 3 * p..3 * p + 3).collect();
+        let bodies: Vec<_> =
+            self.metric.chunks(4).map(|metric| (&self.null_space, metric, &[][..])).collect();
+        let rest = with_bodies(&bodies, |bodies, touched| {
+            let open = OpenMotions {
+                bodies,
+                modes: &modes,
+                rounding: 1e-14,
+                amplitudes: &amplitudes,
+                touched,
+                rows,
+                gaps,
+                compliance: &vec![0.0; gaps.len()],
+                lambda,
+            };
+            travel(&open, &kept(u, 4), vec![0.0; 3 * self.count]).unwrap()
+        });
+        (rest, amplitudes.cols)
     }
 
     fn length(&self, u: &[f64]) -> f64 {
@@ -70,12 +96,9 @@ fn a_block_slides_back_as_far_as_the_wall_allows_whatever_the_start() {
     for (slide, wall) in [(3.0, -0.25), (1e6, -0.25), (0.5, f64::INFINITY), (1e9, 1e30)] {
         let u = [slide, 0.1, slide + 0.01, -0.1];
         let (at_rest, free) = blocks.solve(&rows, &[-0.1, 0.1, wall, 1e20], &[1.0, 2.0, 0.0, 0.0], &u);
-        let x = at_rest.u.in_sequence()[0];
-        assert!(free == 1 && (at_rest.u.in_sequence()[2] - x - 0.01).abs() < 1e-9 * slide, "{free} {x}");
-        assert!(
-            (at_rest.u.in_sequence()[1] - 0.1).abs().max((at_rest.u.in_sequence()[3] + 0.1).abs())
-                <= 1e-15 * slide
-        );
+        let x = at_rest.u.at_rows[0];
+        assert!(free == 1 && (at_rest.u.at_rows[2] - x - 0.01).abs() < 1e-9 * slide, "{free} {x}");
+        assert!((at_rest.u.at_rows[1] - 0.1).abs().max((at_rest.u.at_rows[3] + 0.1).abs()) <= 1e-15 * slide);
         // without the wall: x + 3 (x + 0.01) = 0, the weights being 1 and 3
         let expected = if wall < 0.0 { 0.25 } else { -0.03 / 4.0 };
         assert!((x - expected).abs() <= 1e-15 * slide + 1e-15, "{slide} {wall}: {x}");
@@ -112,14 +135,14 @@ fn three_hundred_loose_blocks_go_back_and_stay() {
             .collect();
         let gaps_now = if travelled == 0.0 { gaps.clone() } else { open };
         let (Rest { u: answer, .. }, free) = blocks.solve(&rows, &gaps_now, &lambda, &u);
-        let answer = answer.in_sequence().to_vec();
+        let answer = answer.at_rows;
         assert_eq!(free, 150 + 2 * 150);
         let met = |i: usize| rows.row_dot(i, &answer) <= gaps_now[i] + 1e-15 * (1.0 + travelled);
         assert!((0..rows.rows()).filter(|&i| lambda[i] == 0.0).all(met));
         assert!(blocks.length(&answer) <= blocks.length(&u));
         let (again, _) = blocks.solve(&rows, &gaps_now, &lambda, &answer);
         let further =
-            again.u.in_sequence().iter().zip(&answer).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            again.u.at_rows.iter().zip(&answer).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         assert!(further <= 1e-14 * (1.0 + travelled), "{further:e}");
         answers.push(answer);
     }
@@ -127,58 +150,53 @@ fn three_hundred_loose_blocks_go_back_and_stay() {
     assert!(far < 1.0, "{far}");
 }
 
-fn one_body(unknowns: usize) -> Ranges {
-    Arc::new(std::iter::once(0..unknowns).collect())
-}
-
-fn of_one_body(v: &[f64]) -> ByBody {
-    ByBody::of(&one_body(v.len()), v.to_vec())
-}
-
 /// A motion is exactly 0 on a grounded unknown, and grounded unknowns do not change its rows.
 #[test]
 fn grounded_unknowns_stay_to_the_last_bit() {
     let null_space = Matrix { rows: 3, cols: 1, data: vec![1.0, 1.0, 1e-20] };
-    let bodies = [Moving { grounded: &[2], modes: 0..1, null_space: &null_space, rounding: 1e-14 }];
-    let amplitudes = Matrix { rows: 1, cols: 1, data: vec![2.0] };
     let mut rows = Csr::empty(3);
     rows.push_row([(0, 1.0), (2, -1.0)]);
-    let open = OpenMotions {
-        bodies: &bodies,
-        amplitudes: &amplitudes,
-        metric: &of_one_body(&[1.0, 1.0, 1e20]),
-        touched: &Touched::of(&one_body(3), 0..3),
-        rows: &rows,
-        gaps: &[1.0],
-        compliance: &[0.0],
-        lambda: &[0.0],
-    };
-    for start in [0.0, 1.0, 1e10] {
-        let at_rest = travel(&open, &of_one_body(&[-5.0, -5.0, -2.0]), vec![start]).unwrap();
-        assert_eq!(at_rest.u.in_sequence(), [-1.0, -1.0, -2.0]);
-        assert_eq!(at_rest.amplitudes, [4.0]);
-    }
+    with_bodies(&[(&null_space, &[1.0, 1.0, 1e20], &[2])], |bodies, touched| {
+        let open = OpenMotions {
+            bodies,
+            modes: std::slice::from_ref(&(0..1)),
+            rounding: 1e-14,
+            amplitudes: &Matrix { rows: 1, cols: 1, data: vec![2.0] },
+            touched,
+            rows: &rows,
+            gaps: &[1.0],
+            compliance: &[0.0],
+            lambda: &[0.0],
+        };
+        for start in [0.0, 1.0, 1e10] {
+            let at_rest = travel(&open, &kept(&[-5.0, -5.0, -2.0], 3), vec![start]).unwrap();
+            assert_eq!(at_rest.u.at_rows, [-1.0, -1.0, -2.0]);
+            assert_eq!(at_rest.amplitudes, [4.0]);
+        }
+    });
 }
 
 /// A soft spring to a stiff unknown: the pair moves together.
 #[test]
 fn a_grounded_unknown_that_hangs_on_another_moves_with_it() {
     let null_space = Matrix { rows: 2, cols: 1, data: vec![1.0, 1.0] };
-    let bodies = [Moving { grounded: &[1], modes: 0..1, null_space: &null_space, rounding: 1e-14 }];
-    let open = OpenMotions {
-        bodies: &bodies,
-        amplitudes: &Matrix { rows: 1, cols: 1, data: vec![1.0] },
-        metric: &of_one_body(&[1.0, 1e-3]),
-        touched: &Touched::of(&one_body(2), 0..2),
-        rows: &Csr::empty(2),
-        gaps: &[],
-        compliance: &[],
-        lambda: &[],
-    };
-    let at_rest = travel(&open, &of_one_body(&[-5.0, -1000.0]), vec![2.0]).unwrap();
+    let at_rest = with_bodies(&[(&null_space, &[1.0, 1e-3], &[1])], |bodies, touched| {
+        let open = OpenMotions {
+            bodies,
+            modes: std::slice::from_ref(&(0..1)),
+            rounding: 1e-14,
+            amplitudes: &Matrix { rows: 1, cols: 1, data: vec![1.0] },
+            touched,
+            rows: &Csr::empty(2),
+            gaps: &[],
+            compliance: &[],
+            lambda: &[],
+        };
+        travel(&open, &kept(&[-5.0, -1000.0], 2), vec![2.0]).unwrap()
+    });
     // a - 5 + 1e-3 (a - 1000) = 0
     let a = 6.0 / 1.001;
     assert!((at_rest.amplitudes[0] - a).abs() < 1e-13);
-    let u = at_rest.u.in_sequence();
+    let u = &at_rest.u.at_rows;
     assert!((u[0] - (a - 5.0)).abs() < 1e-13 && (u[1] - (a - 1000.0)).abs() < 1e-11);
 }

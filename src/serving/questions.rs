@@ -1,0 +1,28 @@
+//! The questions about bodies of islands, by their names.
+
+use crate::body::{asked, Answering, Bring, Name, Put};
+use crate::certificate::{Fit, Largest, Lend, LoadOf, Measure};
+use crate::error::Result;
+use crate::ranks::damaged;
+use crate::solve::local::*;
+
+/// Takes a question of this kind from a message.
+pub fn taken(name: Name, from: &mut &[u8]) -> Result<Box<dyn Answering>> {
+    macro_rules! of {
+        ($($name:ident)+) => {
+            match name {
+                $(Name::$name => asked::<$name>(from),)+
+                Name::Factorise | Name::Assemble | Name::Multiply | Name::Entries | Name::Solve | Name::Join => {
+                    Err(damaged())
+                }
+            }
+        };
+    }
+    of! {
+        Put Bring Fit Measure Largest Lend LoadOf
+        Scale FromLoad Take Loaded Displace Turn Slide
+        Begin Shift Strained Residual Correct Added PointAtRows Displacement Deformation
+        Rigid Split Along FreeMotions Place Energy Negate
+        Sizes Left Proof Work
+    }
+}
