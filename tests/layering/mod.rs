@@ -28,7 +28,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
     ("linalg", &["error", "numbers", "platform", "ranks"]),
     ("mesh", &["error", "numbers", "platform", "linalg"]),
     ("body", &["error", "numbers", "platform", "ranks", "linalg"]),
-    ("serving", &["error", "platform", "ranks", "body"]),
+    ("serving", &["error", "platform", "ranks", "body", "certificate", "solve"]),
     ("constraints", &["error", "numbers", "platform", "linalg"]),
     ("dual", &["error", "numbers", "platform", "linalg", "body", "constraints"]),
     ("qp", &["error", "numbers", "platform", "linalg"]),
