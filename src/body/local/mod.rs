@@ -194,7 +194,7 @@ impl<'a> Locals<'a> {
         of_answer: impl Fn(usize, Q::Answer) -> T,
     ) -> Result<Vec<T>> {
         let Some(first) = self.elsewhere.iter().find_map(Option::as_ref) else {
-            return self.here(&question, own);
+            return self.here(question, own);
         };
         let mut asked = Vec::new();
         for (p, token) in self.elsewhere.iter().enumerate() {
@@ -203,18 +203,17 @@ impl<'a> Locals<'a> {
             asked.push((p, Asking::new(token.rank, Q::NAME, &heading).and(&question(p))));
         }
         let owed = ask(&first.ranks, asked)?;
-        let is_here = |p: usize| self.elsewhere[p].is_none();
-        let own = |p: usize, q: &Q| is_here(p).then(|| own(p, q)).transpose();
-        let mut all = self.here(&question, own)?;
+        let question = |p: usize| self.is_here(p).then(|| question(p));
+        let mut all = self.here(question, |p, q| Ok(q.as_ref().map(|q| own(p, q))))?;
         for (p, answer) in owed.answers::<Q::Answer>()? {
-            all[p] = Some(of_answer(p, answer?));
+            all[p] = Some(answer.map(|answer| of_answer(p, answer)));
         }
-        all.into_iter().map(|of| of.ok_or_else(crate::ranks::damaged)).collect()
+        all.into_iter().map(|of| of.ok_or_else(crate::ranks::damaged)?).collect()
     }
 
-    fn here<Q: Question, T: Send>(
+    fn here<Q: Send + Sync, T: Send>(
         &self,
-        question: &impl Fn(usize) -> Q,
+        question: impl Fn(usize) -> Q,
         own: impl Fn(usize, &Q) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
         if self.threads == 1 {
