@@ -1,5 +1,5 @@
-//! A vector over the unknowns of several bodies, which is read and changed body by body: what decides sees sizes, amplitudes, and
-//! values at the unknowns that rows touch.
+//! A vector over the unknowns of several bodies in one place, body after body: their metric, and what the factor of a whole island takes
+//! and gives. What else belongs to bodies stays with each.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -73,16 +73,8 @@ impl<T> Kept<T> {
     }
 
     /// Of bodies that are all here.
-    pub fn each(&self) -> Result<Vec<&T>> {
+    pub(super) fn each(&self) -> Result<Vec<&T>> {
         (0..self.of.len()).map(|p| self.here(p)).collect()
-    }
-
-    pub fn into_each(self) -> Result<Vec<T>> {
-        let own = |of| match of {
-            OfBody::Here(own) => Ok(own),
-            OfBody::Elsewhere(_) => Err(not_here()),
-        };
-        self.of.into_iter().map(own).collect()
     }
 }
 
