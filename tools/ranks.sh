@@ -19,7 +19,7 @@ test_all() {
 }
 
 bits() {
-    BATTERY=${BITS:-1000} test_all --quiet --test batteries -- the_bits_of_many --ignored --nocapture | grep ': [0-9a-f]\{16\}$'
+    BATTERY=${BITS:-2000} test_all --quiet --test batteries -- the_bits_of_many --ignored --nocapture | grep ': [0-9a-f]\{16\}$'
 }
 
 bits > build/bits_alone
@@ -29,7 +29,7 @@ diff build/bits_alone build/bits_lent && echo "$(wc -l < build/bits_lent) lines 
 # shellcheck disable=SC2086
 test_all --lib --test claims --test batteries -- $skip
 # shellcheck disable=SC2086
-BATTERY=${BATTERY:-10000} test_all --test batteries -- every_varied problems_with_friction random_driven $skip
+BATTERY=${BATTERY:-13000} test_all --test batteries -- every_varied problems_with_friction random_driven $skip
 
 # Wrong in the last bit of the last number of its answers, each of these questions changes the bits. Of the others that number decides nothing
 # in these problems, or there is none.

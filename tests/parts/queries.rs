@@ -17,7 +17,7 @@ fn validation_calls_answer_part_by_part() {
     let [mut apart, mut whole] = both(&deck);
     let (n, m) = (deck.dofs(), deck.contact.len() + deck.equalities.len());
     let (mut separate, mut y) = (vec![0.0; n], vec![0.0; n]);
-    for step in 0..64 {
+    for step in 0..96 {
         let x: Vec<f64> = (0..n).map(|i| (((7 + step) * i % 11) as f64 - 5.0) / 8.0).collect();
         for p in 0..deck.bodies.len() {
             let range = deck.offset(p)..deck.offset(p + 1);
