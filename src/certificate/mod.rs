@@ -28,6 +28,7 @@ use crate::body::{wire_struct, Kept, Local, Locals};
 use crate::constraints::{FrictionNode, RowKind, RowSet, Touched};
 use crate::error::Result;
 use crate::linalg::vector::power_of_two_below;
+use crate::platform::memory::zeros;
 
 pub use crate::linalg::vector::NOISE;
 pub use carried::{everywhere, led, Metric};
@@ -132,6 +133,13 @@ impl Load {
     /// `f_j`, force.
     pub fn at(&self, j: usize) -> f64 {
         self.own.as_ref().map_or(0.0, |f| f[j])
+    }
+
+    /// n_p.
+    pub fn everywhere(&self, n: usize) -> Result<Vec<f64>> {
+        let mut all = zeros(n, "the loads")?;
+        all.iter_mut().zip(self.entries()).for_each(|(all, f)| *all = *f);
+        Ok(all)
     }
 
     /// n_p, or none.

@@ -68,8 +68,7 @@ impl Problem {
             let tangential = island.friction.tangential.gather(tangential);
             let case = Case { model, prepared, ready, method: None };
             let data = case.data(case.loads()?)?;
-            let at_rows: Vec<f64> =
-                data.bodies.iter().zip(&own).flat_map(|(body, u)| body.at_rows(u)).collect();
+            let at_rows = data.bodies.at_rows(&own);
             let (u, at_rows) = (&data.bodies.put(own)?, &at_rows[..]);
             let answer =
                 certificate::Candidate { u, at_rows, lambda: &lambda, mu: &mu, tangential: &tangential };

@@ -13,7 +13,7 @@ use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::given::Stiffness;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Csr, Matrix};
-use crate::platform::memory::copied;
+use crate::platform::memory::{copied, zeros};
 use crate::platform::threads;
 use crate::ranks::{wire_struct, wire_unit, Token, Wire};
 use kept::OfBody;
@@ -228,6 +228,11 @@ impl<'a> Locals<'a> {
         self.elsewhere.get(p).is_none_or(Option::is_none)
     }
 
+    /// The values of vectors of all bodies where rows touch them, body after body.
+    pub fn at_rows(&self, v: &[Vec<f64>]) -> Vec<f64> {
+        self.bodies.iter().zip(v).flat_map(|(body, v)| body.at_rows(v)).collect()
+    }
+
     /// Keeps these vectors with their bodies.
     pub fn put(&self, v: Vec<Vec<f64>>) -> Result<Kept> {
         if self.elsewhere.is_empty() {
@@ -288,6 +293,13 @@ impl<'a> Local<'a> {
     /// Its part of the dual problem.
     pub fn dual(&self) -> Result<&LocalDual<'a>> {
         self.dual.as_ref().ok_or_else(|| Error::new(Kind::Internal, "a body without a dual problem"))
+    }
+
+    /// `K v` and the terms to which its rounding is relative, `|K||v|`.
+    pub fn products(&self, v: &[f64], what: &str) -> Result<(Vec<f64>, Vec<f64>)> {
+        let (mut image, mut terms) = (zeros(v.len(), what)?, zeros(v.len(), what)?);
+        self.stiffness.mul_with_terms(v, &mut image, &mut terms)?;
+        Ok((image, terms))
     }
 
     /// The values where rows touch the body.

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{ratio, weighted_norm};
 use crate::linalg::Matrix;
-use crate::platform::memory::{copied, filled, zeros};
+use crate::platform::memory::{copied, filled};
 
 wire_struct!(Measure { free, limit, idle });
 wire_struct!(Measured {
@@ -118,8 +118,7 @@ impl Part<'_> {
     }
 
     fn products(&self, v: &[f64]) -> Result<Products> {
-        let (mut strain, mut terms) = (zeros(v.len(), WHAT)?, zeros(v.len(), WHAT)?);
-        self.body.stiffness.mul_with_terms(v, &mut strain, &mut terms)?;
+        let (strain, terms) = self.body.products(v, WHAT)?;
         Ok(Products { strain, terms })
     }
 

@@ -155,9 +155,7 @@ impl Question for LoadOf {
     type Given = (Load,);
 
     fn answer(&self, body: &Local, _: &mut (), load: &Load) -> Result<Vec<f64>> {
-        let mut all = zeros(body.order(), "the loads")?;
-        all.iter_mut().zip(load.entries()).for_each(|(all, f)| *all = *f);
-        Ok(all)
+        load.everywhere(body.order())
     }
 }
 

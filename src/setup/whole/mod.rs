@@ -132,7 +132,7 @@ impl Whole {
         let (u, loads) = (self.mean(&data.bodies, answer.u)?, self.loads(data)?);
         let mu = &answer.mu[..self.island.equalities.numbers.len()];
         let data = self.data(model, loads)?;
-        let at_rows: Vec<f64> = data.bodies.iter().zip(&u).flat_map(|(body, u)| body.at_rows(u)).collect();
+        let at_rows = data.bodies.at_rows(&u);
         let u = Kept::of(u);
         certify(&data, Candidate { u: &u, at_rows: &at_rows, mu, ..answer })
     }

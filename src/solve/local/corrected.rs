@@ -7,7 +7,7 @@ use crate::linalg::twofold::{Twofold, TwofoldVector};
 use crate::linalg::vector::axpy;
 use crate::platform::memory::{copied, filled, zeros};
 use crate::solve::local::displaced::{displaced, of_load, turn};
-use crate::solve::local::motions::{length, rigid_part};
+use crate::solve::local::motions::{amplitudes, length};
 use crate::solve::local::OfLoad;
 
 const WHAT: &str = "a correction";
@@ -160,8 +160,8 @@ impl Question for Added {
 
     fn answer(&self, body: &Local, point: &mut Point, _: ()) -> Result<Turned> {
         point.v.add_all(&self.by);
-        let a = rigid_part(body, &self.by)?.into_iter().map(|a| a * body.dual.map_or(1.0, |dual| dual.size));
-        Ok(Turned { a: a.collect(), at_rows: body.at_rows(&self.by), length: length(body, &self.by)? })
+        let (a, length) = (amplitudes(body, &self.by)?, length(body, &self.by)?);
+        Ok(Turned { a, at_rows: body.at_rows(&self.by), length })
     }
 }
 
@@ -228,7 +228,6 @@ impl Point {
 
 /// `|K w|_j <= 64 eps (|K||w|)_j`
 fn is_unresisted(body: &Local, w: &[f64]) -> Result<bool> {
-    let (mut image, mut terms) = (zeros(w.len(), "a motion")?, zeros(w.len(), "a motion")?);
-    body.stiffness.mul_with_terms(w, &mut image, &mut terms)?;
+    let (image, terms) = body.products(w, "a motion")?;
     Ok(image.iter().zip(&terms).all(|(image, terms)| image.abs() <= NOISE * terms))
 }

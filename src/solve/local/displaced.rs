@@ -32,9 +32,9 @@ impl Question for Scale {
     type Given = (Load,);
 
     fn answer(&self, body: &Local, scaled: &mut Vec<f64>, load: &Load) -> Result<Vec<f64>> {
-        *scaled = zeros(body.order(), "the loads")?;
+        *scaled = load.everywhere(body.order())?;
         let unit = body.dual()?.island;
-        scaled.iter_mut().zip(load.entries()).for_each(|(scaled, f)| *scaled = f / unit);
+        scaled.iter_mut().for_each(|f| *f /= unit);
         Ok(body.at_rows(scaled))
     }
 }

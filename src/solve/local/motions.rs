@@ -29,8 +29,7 @@ impl Question for Rigid {
     type Given = (Vec<f64>,);
 
     fn answer(&self, body: &Local, _: &mut (), u: &Vec<f64>) -> Result<Vec<f64>> {
-        let size = body.dual()?.size;
-        Ok(rigid_part(body, u)?.into_iter().map(|a| a * size).collect())
+        amplitudes(body, u)
     }
 }
 
@@ -74,7 +73,6 @@ pub struct Along {
 }
 
 /// A motion where rows touch.
-#[derive(Default)]
 pub struct Moved {
     pub v: Vec<f64>,
     /// `D^-1 |K||v|`, no unit.
@@ -92,10 +90,9 @@ impl Question for Along {
     fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<Option<Moved>> {
         let Some(a) = &self.a else { return Ok(None) };
         let dual = body.dual()?;
-        let (mut v, n) = (zeros(body.order(), WHAT)?, body.order());
+        let mut v = zeros(body.order(), WHAT)?;
         body.null_space.mul_add(1.0 / dual.size, a, &mut v);
-        let (mut image, mut terms) = (zeros(n, WHAT)?, zeros(n, WHAT)?);
-        body.stiffness.mul_with_terms(&v, &mut image, &mut terms)?;
+        let (_, terms) = body.products(&v, WHAT)?;
         let stiff = |j: usize| body.stiffness.metric(j, 0.0) > 0.0;
         let loose = weighted_norm(&v, |j| if stiff(j) { 0.0 } else { dual.metric[j] });
         let size =
@@ -192,8 +189,7 @@ impl Question for Energy {
 
     fn answer(&self, body: &Local, _: &mut (), v: &Vec<f64>) -> Result<EnergyOfMotion> {
         let unit = body.dual()?.island;
-        let (mut product, mut of_entries) = (zeros(v.len(), WHAT)?, zeros(v.len(), WHAT)?);
-        body.stiffness.mul_with_terms(v, &mut product, &mut of_entries)?;
+        let (_, of_entries) = body.products(v, WHAT)?;
         let entries = v.iter().zip(of_entries).map(|(v, terms)| v.abs() * terms / unit).sum();
         let mut image = filled(v.len(), Twofold::default(), WHAT)?;
         body.stiffness.add_twofold(1.0 / unit, v, &mut image)?;
@@ -227,8 +223,14 @@ pub(super) fn length(body: &Local, u: &[f64]) -> Result<f64> {
     Ok(weighted_norm(u, |j| metric[j]))
 }
 
+/// `R'D u` over the modes of the dual.
+pub(super) fn amplitudes(body: &Local, u: &[f64]) -> Result<Vec<f64>> {
+    let size = body.dual()?.size;
+    Ok(rigid_part(body, u)?.into_iter().map(|a| a * size).collect())
+}
+
 /// `R'D u`
-pub(super) fn rigid_part(body: &Local, u: &[f64]) -> Result<Vec<f64>> {
+fn rigid_part(body: &Local, u: &[f64]) -> Result<Vec<f64>> {
     let dual = body.dual()?;
     let by = dual.island / body.unit;
     let weighted: Vec<f64> = u.iter().zip(dual.metric).map(|(u, d)| by * d * u).collect();

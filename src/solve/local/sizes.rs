@@ -181,9 +181,7 @@ impl Question for Work {
 
     fn answer(&self, body: &Local, _: &mut (), of_host: &Load) -> Result<f64> {
         let dual = body.dual()?;
-        let mut load = zeros(body.order(), WHAT)?;
-        load.iter_mut().zip(of_host.entries()).for_each(|(load, f)| *load = *f);
-        let mut load = without_grounded(body, load);
+        let mut load = without_grounded(body, of_host.everywhere(body.order())?);
         let resultants = body.null_space.mul_transposed(&load);
         let mut rigid = zeros(load.len(), WHAT)?;
         body.null_space.mul_add(1.0 / body.unit, &resultants, &mut rigid);
