@@ -2,6 +2,7 @@
 //! (15): `K+ = P [F^-1 0; 0 0] P'`.
 //! Symmetric and reflexive (`K K+ K = K`, `K+ K K+ = K+`), not the Moore-Penrose inverse.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::body::carried::{self, Carried, Motions};
@@ -17,15 +18,15 @@ use crate::body::probe::{known_to, sharpened, Factor};
 use crate::body::rounded::Rounded;
 use crate::body::soft::{known_to_entries, soft_motions};
 use crate::body::spectrum::Doubt;
-use crate::error::Result;
+use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::inverse_form;
 use crate::linalg::{Csr, Matrix, Multiple, Packed};
 use crate::platform::slabs::Slabs;
 
 #[derive(Clone)]
 pub struct GeneralizedInverse {
-    /// `R_p`, n x r, with `R'DR = I`.
-    pub null_space: Matrix,
+    /// `R_p`, n x r, with `R'DR = I`; n x 0 if another rank has it.
+    pub(super) null_space: Matrix,
     /// `lambda_j = r_j'K r_j` for soft or carried motions, 0 for the others; empty if K resists no motion. K+ is that of
     /// a K without this stiffness: see `soft` and `carried`.
     pub stiffness: Vec<f64>,
@@ -64,6 +65,34 @@ pub struct Factorised {
 }
 
 impl GeneralizedInverse {
+    /// Number of unknowns n.
+    pub fn order(&self) -> usize {
+        self.null_space.rows
+    }
+
+    /// Number r of motions of the null space.
+    pub fn motions(&self) -> usize {
+        self.elsewhere().map_or(self.null_space.cols, |elsewhere| elsewhere.motions)
+    }
+
+    /// `R_p`, n x r, with `R'DR = I`, if it is here.
+    pub fn null_space(&self) -> Result<&Matrix> {
+        match self.elsewhere() {
+            None => Ok(&self.null_space),
+            Some(_) => {
+                Err(Error::new(Kind::Internal, "the null space of a body is looked for on the wrong rank"))
+            }
+        }
+    }
+
+    /// `R_p`, wherever it is.
+    pub fn bring_null_space(&self) -> Result<Cow<'_, Matrix>> {
+        match self.elsewhere() {
+            None => Ok(Cow::Borrowed(&self.null_space)),
+            Some(elsewhere) => elsewhere.null_space().map(Cow::Owned),
+        }
+    }
+
     /// (15): `x = K+ b`, both of length n; F^-1 on the free dofs, 0 on those held.
     pub fn apply(&self, b: &[f64], x: &mut [f64]) -> Result<()> {
         x.copy_from_slice(b);
@@ -150,7 +179,7 @@ impl GeneralizedInverse {
     /// Number of motions that K does not resist.
     pub fn floating(&self) -> usize {
         let resisted = self.stiffness.iter().filter(|stiffness| **stiffness != 0.0).count();
-        self.null_space.cols - resisted
+        self.motions() - resisted
     }
 
     /// Number of carried motions, which are the last.
@@ -163,12 +192,12 @@ impl GeneralizedInverse {
 
     /// Number of motions that are not carried.
     pub(super) fn own_motions(&self) -> usize {
-        self.null_space.cols - self.carried_motions()
+        self.motions() - self.carried_motions()
     }
 
-    /// The null space without the carried motions.
-    pub fn free_motions(&self) -> Matrix {
-        self.null_space.columns(0..self.own_motions())
+    /// The null space without the carried motions, wherever it is.
+    pub fn free_motions(&self) -> Result<Matrix> {
+        Ok(self.bring_null_space()?.columns(0..self.own_motions()))
     }
 
     /// Entries of the factor; 0 if the host has the factor.
@@ -218,7 +247,9 @@ impl GeneralizedInverse {
             Factor::Own(factor) => inverse_form(factor, rows)?,
             Factor::Rounded(rounded) => rounded.inverse_form(rows)?,
             Factor::Host(host) => host.inverse_form(rows)?,
-            Factor::Elsewhere(elsewhere) => return elsewhere.inverse_form(rows),
+            Factor::Elsewhere(_) => {
+                return Err(Error::new(Kind::Internal, "K+ of a body is looked for on the wrong rank"));
+            }
         };
         self.carried.iter().try_for_each(|carried| carried.take_from_form(rows, &mut form))?;
         Ok(form)

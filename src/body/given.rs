@@ -41,6 +41,29 @@ impl Stiffness<'_> {
         }
     }
 
+    /// `max D_jj` of the metric, 0 without stiffness.
+    pub fn stiffest(&self) -> f64 {
+        (0..self.order()).map(|i| self.metric(i, 0.0)).fold(0.0, f64::max)
+    }
+
+    /// D at these unknowns, 0 without stiffness.
+    pub fn diagonal_at(&self, dofs: &[u32]) -> Vec<f64> {
+        dofs.iter().map(|dof| self.metric(*dof as usize, 0.0)).collect()
+    }
+
+    /// Visits row, column and value of every entry of the lower triangle; false if the host keeps them. Contributions of two
+    /// pieces to one entry are two entries.
+    pub fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) -> bool {
+        match self {
+            Self::Matrix(k) => {
+                (0..k.order()).for_each(|i| k.lower_row(i).for_each(|(j, v)| visit(i, j, v)));
+            }
+            Self::Assembled(k) => k.each_entry(visit),
+            Self::Host(_) => return false,
+        }
+        true
+    }
+
     /// Number of its entries; of unknowns if the host keeps them.
     pub fn entries(&self) -> usize {
         match self {

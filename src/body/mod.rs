@@ -7,11 +7,13 @@ mod borrowed;
 mod boundary;
 mod candidates;
 mod carried;
+mod coarse;
 mod digits;
 mod elsewhere;
 mod fixing;
 mod generalized_inverse;
 mod given;
+mod grounded;
 mod held;
 mod hints;
 mod host;
@@ -44,14 +46,18 @@ pub use alike::{input_key, pattern_key, same_body, same_matrix, same_pattern, sa
 pub use assembled::Assembled;
 pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};
+pub use coarse::Coarse;
 pub use digits::Digits;
-pub use elsewhere::{Asking, Elsewhere, FormElsewhere, Name, Owed, ABOUT_BODIES};
+pub use elsewhere::{
+    Asking, Away, Elsewhere, FormElsewhere, InIsland, Joined, Joining, Name, Owed, ABOUT_BODIES,
+};
 pub use generalized_inverse::{Factorised, GeneralizedInverse};
 pub use given::Stiffness;
+pub use grounded::grounded;
 pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER};
 pub use layout::{Layout, Symbolic};
-pub use lent::{asked, Answering, Bodies, Join, Lending, Made};
-pub use local::{Bring, Distributed, Kept, Local, LocalDual, Locals, Put, Question};
+pub use lent::{asked, Answering, Bodies, Lending, Made};
+pub use local::{Bring, Distributed, Kept, Local, LocalDual, Locals, Put, Question, Section, Seen};
 pub use misfit::Misfit;
 pub use null_space::{Modes, NullSpaceInput};
 pub use pilots::Pilots;

@@ -10,14 +10,11 @@
 
 use std::rc::Rc;
 
-use crate::body::Stiffness;
-use crate::certificate::clusters::{Clusters, Metered};
-use crate::constraints::{RowSet, Touched};
+use crate::certificate::clusters::{Clusters, Trace};
+use crate::constraints::RowSet;
 use crate::error::Result;
-use crate::linalg::by_body::Ranges;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::NOISE;
-use crate::linalg::ByBody;
 use crate::numbers::certificate::CARRIED;
 use crate::platform::memory::{filled, reserved, zeros};
 
@@ -34,13 +31,12 @@ impl Metric {
     /// For the rows of the island that may hold something, as far as known by the kind of a row and its number; a row with an
     /// infinite gap holds nothing.
     pub fn of(
-        bodies: &[Metered],
-        touched: &Touched,
+        trace: &Trace,
         rows: [&RowSet; 3],
         holds: &dyn Fn(usize, usize) -> bool,
         unit: f64,
     ) -> Result<Self> {
-        Search::new(bodies, touched, rows, holds, unit)?.metric()
+        Search::new(trace, rows, holds, unit)?.metric()
     }
 }
 
@@ -48,33 +44,12 @@ impl Metric {
 /// measures motions that rows pass on from soft unknowns to stiff ones, and the rounding of forces that cancel between rows. A row
 /// gives no more than the stiffest unknown to which it leads: an entry that is nearly 0 is no lever.
 pub fn led(
-    bodies: &[Metered],
-    touched: &Touched,
+    trace: &Trace,
     rows: [&RowSet; 3],
     holds: &dyn Fn(usize, usize) -> bool,
     unit: f64,
 ) -> Result<Vec<f64>> {
-    Search::new(bodies, touched, rows, holds, unit)?.led()
-}
-
-/// D / unit of all unknowns, but these values where rows touch.
-pub fn everywhere(
-    bodies: &[Metered],
-    (ranges, touched): (&Ranges, &Touched),
-    values: &[f64],
-    unit: f64,
-) -> Result<ByBody> {
-    let own = bodies
-        .iter()
-        .map(|(k, without)| -> Vec<f64> { (0..k.order()).map(|i| k.metric(i, *without) / unit).collect() });
-    let mut all = ByBody::from_each(ranges, own, WHAT)?;
-    touched.set(values, &mut all);
-    Ok(all)
-}
-
-/// The largest D of a body; `without`: that of unknowns without stiffness.
-pub(super) fn stiffest(k: Stiffness, without: f64) -> f64 {
-    (0..k.order()).map(|i| k.metric(i, without)).fold(0.0, f64::max)
+    Search::new(trace, rows, holds, unit)?.led()
 }
 
 /// The search for D~ or D^ from the stiffest unknowns outward.
@@ -95,23 +70,21 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub fn new(
-        bodies: &[Metered],
-        touched: &Touched,
+        Trace { diagonal, without, stiffest, coupled }: &Trace,
         rows: [&'a RowSet; 3],
         holds: &'a dyn Fn(usize, usize) -> bool,
         unit: f64,
     ) -> Result<Self> {
-        let n = touched.len();
+        let n = diagonal.len();
         let (mut values, mut stiffness) = (reserved(n, WHAT)?, reserved(n, WHAT)?);
-        for (p, (k, without)) in bodies.iter().enumerate() {
-            values.extend(touched.dofs(p).map(|dof| k.metric(dof, *without) / unit));
-            stiffness.extend(touched.dofs(p).map(|dof| k.metric(dof, 0.0) / unit));
-        }
+        let value = |(d, without): (&f64, &f64)| if *d > 0.0 { *d } else { *without };
+        values.extend(diagonal.iter().zip(without).map(|of| value(of) / unit));
+        stiffness.extend(diagonal.iter().map(|d| d / unit));
         let mut held = filled(n + 1, false, WHAT)?;
         held[n] = true;
         let mut search = Self { rows, holds, unit, clusters: None, values, stiffness, held };
-        if search.is_needed(bodies) {
-            search.clusters = Some(Rc::new(Clusters::of(bodies, touched, rows)?));
+        if search.is_needed(stiffest / unit) {
+            search.clusters = Some(Rc::new(Clusters::of(coupled()?, rows)?));
         }
         Ok(search)
     }
@@ -147,8 +120,7 @@ impl<'a> Search<'a> {
     }
 
     /// Whether rows may hold some unknown far better than K: another unknown, or the ground.
-    fn is_needed(&self, bodies: &[Metered]) -> bool {
-        let stiffest = bodies.iter().map(|(k, _)| stiffest(*k, 0.0)).fold(0.0, f64::max) / self.unit;
+    fn is_needed(&self, stiffest: f64) -> bool {
         let mut soft = false;
         self.each_row(self.every_row(), |row, _| {
             soft |= row.len() == 1 && CARRIED * self.stiffness[row[0].0] < stiffest;
@@ -302,6 +274,8 @@ impl<'a> Search<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::Stiffness;
+    use crate::certificate::clusters::Coupled;
     use crate::linalg::{Csr, Symmetric};
     use std::sync::Arc;
 
@@ -316,15 +290,21 @@ mod tests {
         }
     }
 
+    /// Of these bodies, all of whose unknowns are touched.
+    fn of_matrices(matrices: &[Symmetric], rows: &RowSet) -> Metric {
+        let all = |k: &Symmetric| (0..k.order() as u32).collect::<Vec<_>>();
+        let of =
+            |k: &Symmetric| (Stiffness::Matrix(k).diagonal_at(&all(k)), Stiffness::Matrix(k).stiffest(), 1.0);
+        let coupled = || matrices.iter().map(|k| Coupled::of(k.into(), &all(k))).collect();
+        let (trace, none) = (Trace::new(matrices.iter().map(of), &coupled), RowSet::default());
+        Metric::of(&trace, [&none, rows, &none], &|_, _| true, 1.0).unwrap()
+    }
+
     /// Of springs to the ground, each a body.
     fn metric(springs: &[f64], of_rows: &[&[(usize, f64)]]) -> Metric {
         let matrices: Vec<Symmetric> =
             springs.iter().map(|&k| Symmetric::new(vec![0, 1], vec![0], vec![k])).collect();
-        let bodies: Vec<Metered> = matrices.iter().map(|k| (k.into(), 1.0)).collect();
-        let ranges: Vec<_> = (0..springs.len()).map(|p| p..p + 1).collect();
-        let (rows, none) = (rows(springs.len(), of_rows), RowSet::default());
-        Metric::of(&bodies, &Touched::of(&ranges, 0..springs.len()), [&rows, &none, &none], &|_, _| true, 1.0)
-            .unwrap()
+        of_matrices(&matrices, &rows(springs.len(), of_rows))
     }
 
     #[test]
@@ -371,14 +351,11 @@ mod tests {
             });
             k
         };
-        let (stiff, none) = (Symmetric::new(vec![0, 1], vec![0], vec![1.0]), RowSet::default());
+        let stiff = Symmetric::new(vec![0, 1], vec![0], vec![1.0]);
         for (n, held, carried) in [(6, 6, true), (6, 5, false), (7, 7, false)] {
-            let soft = chain(n);
-            let bodies: Vec<Metered> = vec![((&stiff).into(), 1.0), ((&soft).into(), 1.0)];
-            let touched = Touched::of(&[0..1, 1..1 + n], 0..1 + n);
             let entries: Vec<_> = (1..=held).map(|j| [(0, 1.0), (j, -1.0)]).collect();
             let rows = rows(n + 1, &entries.iter().map(|row| &row[..]).collect::<Vec<_>>());
-            let of = Metric::of(&bodies, &touched, [&none, &rows, &none], &|_, _| true, 1.0).unwrap();
+            let of = of_matrices(&[stiff.clone(), chain(n)], &rows);
             assert_eq!(of.carried, if carried { (1..=n).collect() } else { vec![] });
         }
     }

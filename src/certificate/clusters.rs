@@ -2,9 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::body::Stiffness;
-use crate::certificate::grounded::each_entry;
-use crate::constraints::{RowSet, Touched};
+use crate::body::{wire_struct, wire_unit, Local, Name, Question, Stiffness};
+use crate::constraints::RowSet;
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::sparse::csr::by_columns;
@@ -16,8 +15,89 @@ use crate::platform::memory::filled;
 const CLUSTER: usize = 6;
 const WHAT: &str = "the metric of an island";
 
-/// A body: its K, and the metric of unknowns without stiffness.
-pub type Metered<'a> = (Stiffness<'a>, f64);
+/// K where rows touch the bodies of an island, t unknowns: all that the search knows of it.
+pub struct Trace<'a> {
+    /// D, 0 without stiffness, t, force / length.
+    pub diagonal: Vec<f64>,
+    /// The metric of unknowns without stiffness, t, force / length.
+    pub without: Vec<f64>,
+    /// The largest D of a body.
+    pub stiffest: f64,
+    /// What K couples in every body: asked for only where rows hold something.
+    pub coupled: &'a dyn Fn() -> Result<Vec<Coupled>>,
+}
+
+impl<'a> Trace<'a> {
+    /// Of every body D where rows touch it, its largest D, and the metric of its unknowns without stiffness.
+    pub fn new<D: AsRef<[f64]>>(
+        bodies: impl IntoIterator<Item = (D, f64, f64)>,
+        coupled: &'a dyn Fn() -> Result<Vec<Coupled>>,
+    ) -> Self {
+        let mut trace = Self { diagonal: Vec::new(), without: Vec::new(), stiffest: 0.0, coupled };
+        for (own, stiffest, without) in bodies {
+            trace.diagonal.extend_from_slice(own.as_ref());
+            trace.without.resize(trace.diagonal.len(), without);
+            trace.stiffest = trace.stiffest.max(stiffest);
+        }
+        trace
+    }
+}
+
+/// What K couples in a body, and where rows touch it.
+pub struct Coupled {
+    /// Cluster of every touched unknown, in the order in which they appear.
+    of: Vec<usize>,
+    /// Unknowns of each cluster, also those that no row touches.
+    sizes: Vec<usize>,
+    /// `max |K_ij|`, force / length.
+    strongest: f64,
+}
+
+wire_struct!(Coupled { of, sizes, strongest });
+
+/// Asks for what K couples.
+pub struct Couple;
+
+wire_unit!(Couple);
+
+impl Question for Couple {
+    const NAME: Name = Name::Couple;
+    type Answer = Coupled;
+    type Kept = ();
+    type Given = ();
+
+    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<Coupled> {
+        Coupled::of(body.stiffness, body.touched)
+    }
+}
+
+impl Coupled {
+    pub fn of(k: Stiffness, touched: &[u32]) -> Result<Self> {
+        let (mut pairs, mut strongest) = (Vec::new(), 0.0f64);
+        let couple = |i: usize, j: usize, v: f64| {
+            strongest = if i == j { strongest } else { strongest.max(v.abs()) };
+            // as far apart as a pilot and the body on which it hangs: |K_ij| < (K_ii K_jj)^1/2 / CARRIED
+            let [part, of] = [i, j].map(|of| CARRIED * v.abs() / k.metric(of, 0.0));
+            if i != j && v != 0.0 && (part * of).is_nan() | (part * of >= 1.0) {
+                pairs.push([i, j]);
+            }
+        };
+        // K+ of a body whose entries the host keeps cannot hold further unknowns
+        let least = if k.each_entry(couple) { 0 } else { CLUSTER };
+        let (cluster, count) = joined(k.order(), pairs.into_iter().map(|pair| pair.into_iter()));
+        let mut own = filled(count, least, WHAT)?;
+        cluster.iter().for_each(|&cluster| own[cluster] += 1);
+        let (mut number, mut sizes) = (filled(count, None, WHAT)?, Vec::new());
+        let of = touched.iter().map(|dof| {
+            let cluster = cluster[*dof as usize];
+            *number[cluster].get_or_insert_with(|| {
+                sizes.push(own[cluster]);
+                sizes.len() - 1
+            })
+        });
+        Ok(Self { of: of.collect(), sizes, strongest })
+    }
+}
 
 /// The clusters of the unknowns that rows touch: those that K couples by more than the springs that hang a pilot on a body; and their rows.
 pub(super) struct Clusters {
@@ -33,30 +113,12 @@ pub(super) struct Clusters {
 }
 
 impl Clusters {
-    pub fn of(bodies: &[Metered], touched: &Touched, rows: [&RowSet; 3]) -> Result<Self> {
-        let (mut of, mut sizes, mut ground) = (Vec::with_capacity(touched.len() + 1), Vec::new(), 0.0f64);
-        for (p, (k, _)) in bodies.iter().enumerate() {
-            let mut pairs = Vec::new();
-            let couple = |i: usize, j: usize, v: f64| {
-                ground = if i == j { ground } else { ground.max(v.abs()) };
-                // as far apart as a pilot and the body on which it hangs: |K_ij| < (K_ii K_jj)^1/2 / CARRIED
-                let [part, of] = [i, j].map(|of| CARRIED * v.abs() / k.metric(of, 0.0));
-                if i != j && v != 0.0 && (part * of).is_nan() | (part * of >= 1.0) {
-                    pairs.push([i, j]);
-                }
-            };
-            // K+ of a body whose entries the host keeps cannot hold further unknowns
-            let least = if each_entry(*k, couple) { 0 } else { CLUSTER };
-            let (cluster, count) = joined(k.order(), pairs.into_iter().map(|pair| pair.into_iter()));
-            let mut own = filled(count, least, WHAT)?;
-            cluster.iter().for_each(|&cluster| own[cluster] += 1);
-            let mut number = filled(count, None, WHAT)?;
-            of.extend(touched.dofs(p).map(|dof| {
-                *number[cluster[dof]].get_or_insert_with(|| {
-                    sizes.push(own[cluster[dof]]);
-                    sizes.len() - 1
-                })
-            }));
+    pub fn of(coupled: Vec<Coupled>, rows: [&RowSet; 3]) -> Result<Self> {
+        let (mut of, mut sizes, mut ground) = (Vec::new(), Vec::new(), 0.0f64);
+        for body in coupled {
+            of.extend(body.of.iter().map(|cluster| sizes.len() + cluster));
+            sizes.extend(body.sizes);
+            ground = ground.max(body.strongest);
         }
         of.push(sizes.len());
         sizes.push(1);

@@ -1,7 +1,8 @@
 //! What all entries need: the rows of the island with the forces on them, values at the unknowns that rows touch, and the bodies.
 
-use crate::body::Kept;
-use crate::certificate::carried::{stiffest, Metric, Search};
+use crate::body::{Kept, Seen};
+use crate::certificate::carried::{Metric, Search};
+use crate::certificate::clusters::{Couple, Trace};
 use crate::certificate::part::{Felt, Fit, Fitted, Told};
 use crate::certificate::{Candidate, Data};
 use crate::constraints::{row_scales, RowKind, RowSet};
@@ -40,9 +41,8 @@ pub(super) struct AtRows {
 impl<'a> Field<'a> {
     /// With what the bodies keep of it.
     pub fn new(data: &'a Data<'a>, answer: Candidate<'a>) -> Result<(Self, Kept<Felt>)> {
-        let metered = data.metered();
-        let unit = metered.iter().map(|(k, without)| stiffest(*k, *without)).fold(0.0, f64::max);
-        let unit = power_of_two_below(unit);
+        let stiffest = |body: &Seen| Some(body.stiffest()).filter(|d| *d > 0.0).unwrap_or(data.without(body));
+        let unit = power_of_two_below(data.bodies.iter().map(stiffest).fold(0.0, f64::max));
         let at = AtRows::new(data, answer, unit)?;
         let told = |p: usize| {
             let range = data.touched.range(p);
@@ -92,12 +92,14 @@ impl<'a> Field<'a> {
 }
 
 impl AtRows {
-    fn new(data: &Data, answer: Candidate, unit: f64) -> Result<Self> {
+    fn new<'a>(data: &Data<'a>, answer: Candidate, unit: f64) -> Result<Self> {
         let touched = data.touched;
         let forces = RowKind::ALL.map(|kind| answer.forces(kind));
         let holds = |kind: usize, i: usize| kind == RowKind::Equality as usize || forces[kind][i] != 0.0;
-        let search =
-            Search::new(&data.metered(), touched, RowKind::ALL.map(|kind| data.rows(kind)), &holds, unit)?;
+        let of = |body: &Seen<'a>| (body.diagonal(), body.stiffest(), data.without(body));
+        let coupled = || data.bodies.ask(|_| Couple, ());
+        let trace = Trace::new(data.bodies.iter().map(of), &coupled);
+        let search = Search::new(&trace, RowKind::ALL.map(|kind| data.rows(kind)), &holds, unit)?;
         let led = search.clone().led()?;
         let Metric { values: metric, carried: places } = search.metric()?;
         let mut carried = vec![false; touched.len()];

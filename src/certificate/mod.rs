@@ -16,7 +16,6 @@ mod entry;
 mod field;
 mod forces;
 mod friction;
-mod grounded;
 mod part;
 mod row;
 mod rows;
@@ -24,22 +23,21 @@ mod rows;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::body::{wire_struct, Kept, Local, Locals};
+use crate::body::{wire_struct, Kept, Locals, Seen};
 use crate::constraints::{FrictionNode, RowKind, RowSet, Touched};
 use crate::error::Result;
 use crate::linalg::vector::power_of_two_below;
 use crate::platform::memory::zeros;
 
 pub use crate::linalg::vector::NOISE;
-pub use carried::{everywhere, led, Metric};
-use clusters::Metered;
+pub use carried::{led, Metric};
+pub use clusters::{Couple, Coupled, Trace};
 use deformation::{free_motions, Deformation};
 use energy::Energies;
 pub use entry::{Certificate, Entry};
 use field::Field;
 use forces::{Forces, Given};
-pub use grounded::grounded;
-pub use part::{Fit, Largest, Lend, LoadOf, Measure};
+pub use part::{Fit, Largest, Lend, LoadOf, Measure, SizeOfLoad};
 use rows::JudgedRows;
 
 /// One island in terms of the host's data.
@@ -66,14 +64,9 @@ pub struct Data<'a> {
 }
 
 impl<'a> Data<'a> {
-    /// The bodies, for the search for what rows hold.
-    pub fn metered(&self) -> Vec<Metered<'a>> {
-        self.bodies.iter().map(|body| (body.stiffness, self.without(body))).collect()
-    }
-
     /// The metric of unknowns of a body without stiffness, force / length.
-    fn without(&self, body: &Local) -> f64 {
-        self.unit.unwrap_or(body.unit)
+    fn without(&self, body: &Seen) -> f64 {
+        self.unit.unwrap_or(body.unit())
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
@@ -87,7 +80,7 @@ impl<'a> Data<'a> {
     /// Where nothing has stiffness, no force deforms anything, and D may be any number: then it is the force by the way, of the
     /// unknowns, of rows with a force and of slips so far, so that gaps are relative to this way.
     fn measured_by(&self, answer: Candidate) -> Result<Cow<'_, Self>> {
-        if self.bodies.iter().any(|body| body.stiffness.largest_diagonal() > 0.0) {
+        if self.bodies.iter().any(|body| body.stiffest() > 0.0) {
             return Ok(Cow::Borrowed(self));
         }
         let largest = self.bodies.ask(|_| Largest, (answer.u, &self.loads))?.into_iter();
@@ -159,7 +152,7 @@ impl Load {
 }
 
 /// The entries of a load that are not 0, without grounded unknowns.
-pub fn acting<'a>(load: &'a [f64], grounded: &'a [u32]) -> impl Iterator<Item = (usize, f64)> + 'a {
+fn acting<'a>(load: &'a [f64], grounded: &'a [u32]) -> impl Iterator<Item = (usize, f64)> + 'a {
     let entries = load.iter().copied().enumerate();
     entries.filter(|(i, f)| *f != 0.0 && grounded.binary_search(&(*i as u32)).is_err())
 }

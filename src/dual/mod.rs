@@ -12,7 +12,6 @@ mod alike;
 mod cost;
 mod coupling;
 mod elsewhere;
-mod images;
 mod multiples;
 mod operator;
 mod preconditioner;
@@ -31,9 +30,8 @@ pub use turned::{TurnedFace, TurnedRow};
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::body::{Asking, GeneralizedInverse, LocalDual};
+use crate::body::{Coarse, GeneralizedInverse, InIsland, Joining, LocalDual};
 use crate::constraints::Touched;
-use crate::dual::images::{coarse, scale_by_body};
 use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::dual::springs::{add_springs, negative_modes};
@@ -102,7 +100,7 @@ pub struct Draft {
 impl Draft {
     /// `matrix` is B over the unknowns that rows touch.
     pub fn new(parts: Vec<BodyShare>, touched: &Touched, matrix: &Arc<Csr>) -> Self {
-        let orders: Vec<_> = parts.iter().map(|part| part.kplus.null_space.rows).collect();
+        let orders: Vec<_> = parts.iter().map(|part| part.kplus.order()).collect();
         let local = cut(&orders, touched, matrix);
         let (mut subdomains, mut distinct) =
             (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
@@ -111,7 +109,7 @@ impl Draft {
             let (multiples, own) = Multiples::of(&matrix);
             let reuse = (!part.implicit).then(|| Reuse::of(part.kept, &part.kplus, &own));
             distinct.push((own, reuse));
-            let modes = first..first + part.kplus.null_space.cols;
+            let modes = first..first + part.kplus.motions();
             first = modes.end;
             subdomains.push(Subdomain {
                 modes,
@@ -129,16 +127,16 @@ impl Draft {
         Self { subdomains, distinct }
     }
 
-    /// The question for `B K_p+ B'` of body p if it is to be made on another rank, and what stands for it here.
-    pub fn asking(&self, p: usize) -> Option<(Asking, Form)> {
-        let (s, (rows, reuse)) = (&self.subdomains[p], &self.distinct[p]);
+    /// The question for body p if its K+ is on another rank, which then makes `B K_p+ B'`, too, if it is due.
+    pub fn joining(&self, p: usize, of: InIsland) -> Option<Joining> {
+        let s = &self.subdomains[p];
         let elsewhere = s.kplus.elsewhere()?;
-        let (asking, form) = match reuse {
-            None => elsewhere.operator(&s.matrix, false),
-            Some(reuse) if reuse.is_all() => return None,
-            Some(_) => elsewhere.operator(rows, true),
+        let form = match &self.distinct[p].1 {
+            None => Some((false, None)),
+            Some(reuse) if reuse.is_all() => None,
+            Some(_) => Some((true, s.multiples.firsts())),
         };
-        Some((asking, Form::Elsewhere(Arc::new(form))))
+        Some(elsewhere.joining(&s.matrix, form, s.by, of))
     }
 
     /// `B K_p+ B'` of body p, none if it is matrix-free; must be called only once per body, and not if another rank makes it.
@@ -152,18 +150,29 @@ impl Draft {
         self.distinct.iter().filter_map(|(_, reuse)| reuse.as_ref()).map(Reuse::columns).sum()
     }
 
-    /// The dual problem with the assembled operators; `compliance`: the diagonal of C, m entries. `balanced`: scales R_p
-    /// so that `|G_p|` is in [1, 2) for every body that rows touch; otherwise R_p is not scaled.
-    pub fn finish(self, operators: Vec<Option<Form>>, mut compliance: Vec<f64>, balanced: bool) -> Dual {
+    /// The dual problem with these operators and parts of G of bodies on other ranks; `compliance`: the diagonal of C, m entries.
+    /// `balanced`: scales R_p so that `|G_p|` is in [1, 2) for every body that rows touch; otherwise R_p is not scaled.
+    pub fn finish(
+        self,
+        made: impl IntoIterator<Item = (Option<Form>, Option<Coarse>)>,
+        mut compliance: Vec<f64>,
+        balanced: bool,
+    ) -> Dual {
         let mut subdomains = self.subdomains;
-        subdomains.iter_mut().zip(operators).for_each(|(s, operator)| s.operator = operator);
         let modes = subdomains.last().map_or(0, |s| s.modes.end);
-        let mut coarse = coarse(&subdomains, compliance.len(), modes);
+        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); compliance.len()];
+        for (s, (operator, coarse)) in subdomains.iter_mut().zip(made) {
+            s.operator = operator;
+            let coarse = coarse.unwrap_or_else(|| s.kplus.coarse(&s.matrix, s.by));
+            s.size = if balanced { coarse.size } else { 1.0 };
+            for (k, &i) in s.rows.iter().enumerate() {
+                rows[i].extend(coarse.matrix.row(k).map(|(j, v)| (s.modes.start + j, v / s.size)));
+            }
+        }
+        let mut coarse = Csr::with_room(modes, rows.len(), rows.iter().map(Vec::len).sum());
+        rows.into_iter().for_each(|row| coarse.push_row(row));
         let springs = add_springs(&subdomains, &mut coarse);
         compliance.resize(compliance.len() + springs, 1.0);
-        if balanced {
-            scale_by_body(&mut subdomains, &mut coarse);
-        }
         let negative = negative_modes(&subdomains);
         let blocks = subdomains.iter().map(|own| own.modes.start).collect();
         Dual { subdomains, compliance, coarse, blocks, springs, negative }
@@ -272,12 +281,6 @@ impl Dual {
     pub fn sizes_of_modes(&self) -> Vec<f64> {
         let of = |s: &Subdomain| vec![s.size * s.by.sqrt(); s.modes.len()];
         self.subdomains.iter().flat_map(of).collect()
-    }
-
-    /// `v += R a` of body p, a over all modes.
-    pub fn add_rigid_motion(&self, p: usize, a: &[f64], v: &mut [f64]) {
-        let s = &self.subdomains[p];
-        s.kplus.null_space.mul_add(1.0 / s.size, &a[s.modes.clone()], v);
     }
 }
 

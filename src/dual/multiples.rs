@@ -55,6 +55,13 @@ impl Multiples {
         self.multiples.get(i).copied().unwrap_or(RowMultiple { of: i, factor: 1.0 })
     }
 
+    /// The rows of B among those of B_p; none: all.
+    pub fn firsts(&self) -> Option<Vec<usize>> {
+        let mut next = 0..self.count;
+        let is_first = |i: &usize| self.multiples[*i].of == next.start && next.next().is_some();
+        (!self.multiples.is_empty()).then(|| (0..self.multiples.len()).filter(is_first).collect())
+    }
+
     /// Rows of B that the first rows of B_p, so many, are multiples of.
     pub fn count_of_first(&self, rows: usize) -> usize {
         (0..rows).map(|i| self.row(i).of + 1).max().unwrap_or(0)
@@ -120,6 +127,7 @@ mod tests {
         let expected = expected.map(|(of, factor)| RowMultiple { of, factor });
         assert_eq!(multiples.multiples, expected);
         assert_eq!((multiples.count, distinct.rows()), (4, 4));
+        assert_eq!(multiples.firsts(), Some(vec![0, 1, 3, 5]));
         assert_eq!([0, 1, 3, 4].map(|rows| multiples.count_of_first(rows)), [0, 1, 2, 3]);
         for i in 0..6 {
             let RowMultiple { of, factor } = multiples.multiples[i];

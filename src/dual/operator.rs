@@ -254,8 +254,8 @@ mod tests {
         rows.push_row([(5, 1.0), (6, -1.0), (15, 1.0)]);
         let compliance = vec![0.0, 0.1, 0.0, 0.2];
         let draft = Draft::new(vec![part(), part()], &Touched::of(&[0..8, 8..16], 0..16), &Arc::new(rows));
-        let operators = (0..2).map(|p| draft.assemble(p).unwrap()).collect();
-        draft.finish(operators, compliance, true)
+        let made: Vec<_> = (0..2).map(|p| (draft.assemble(p).unwrap(), None)).collect();
+        draft.finish(made, compliance, true)
     }
 
     #[test]

@@ -5,12 +5,12 @@ use crate::linalg::Csr;
 
 /// Adds springs at the held unknowns of K+ that resist soft motions, with energy `lambda_j a_j^2 / 2` for the amplitude
 /// a_j: compliant rows `a_j = mu / lambda_j` without unknowns, for which F has only a diagonal entry and G one entry.
-/// Scaled by `lambda_j^1/2`.
+/// Scaled by `lambda_j^1/2`, and as G by the size of their body.
 pub fn add_springs(subdomains: &[Subdomain], coarse: &mut Csr) -> usize {
     let before = coarse.rows();
     for s in subdomains {
         let resisted = s.soft_modes().filter(|(_, stiffness)| *stiffness > 0.0);
-        resisted.for_each(|(mode, stiffness)| coarse.push_row([(mode, stiffness.sqrt())]));
+        resisted.for_each(|(mode, stiffness)| coarse.push_row([(mode, stiffness.sqrt() / s.size)]));
     }
     coarse.rows() - before
 }
@@ -55,7 +55,6 @@ impl Dual {
 impl Subdomain {
     /// Modes of soft motions with their stiffness, in the unit of forces of all bodies.
     fn soft_modes(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let stiffness = self.kplus.stiffness.iter().map(|stiffness| stiffness / self.by);
-        self.modes.clone().zip(stiffness)
+        self.modes.clone().zip(self.kplus.springs(self.by))
     }
 }

@@ -33,6 +33,19 @@ impl<T: Copy> ByBody<T> {
         Ok(Self::of(ranges, values))
     }
 
+    /// The same of these bodies alone: others have no values.
+    pub fn only(&self, keeps: impl Fn(usize) -> bool) -> Self {
+        let (mut ranges, mut values) = (Vec::with_capacity(self.ranges.len()), Vec::new());
+        for (p, range) in self.ranges.iter().enumerate() {
+            let first = values.len();
+            if keeps(p) {
+                values.extend_from_slice(&self.values[range.clone()]);
+            }
+            ranges.push(first..values.len());
+        }
+        Self { ranges: Arc::new(ranges), values }
+    }
+
     /// The values of body p.
     pub fn on(&self, p: usize) -> &[T] {
         &self.values[self.ranges[p].clone()]

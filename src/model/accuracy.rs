@@ -4,9 +4,9 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::body::Body;
-use crate::certificate::led;
-use crate::constraints::{RowKind, RowSet, Touched};
+use crate::body::{Body, Stiffness};
+use crate::certificate::{led, Coupled, Trace};
+use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::hash::{hash, START};
 use crate::linalg::sparse::csr::by_columns;
@@ -95,12 +95,15 @@ impl SolvedModel {
     /// What holds every unknown, D^, force / length; infinite without stiffness.
     fn held(&self) -> Result<Vec<f64>> {
         let n = self.sizes().dofs;
-        let bodies = self.bodies.iter().map(|given| Some((given.body.k()?, f64::INFINITY)));
+        let bodies = self.bodies.iter().map(|given| given.body.k());
         let Some(bodies) = bodies.collect::<Option<Vec<_>>>() else {
             return filled(n, f64::INFINITY, WHAT);
         };
-        let ranges: Vec<_> = (0..bodies.len()).map(|p| self.range(p)).collect();
-        led(&bodies, &Touched::of(&ranges, 0..n), RowKind::ALL.map(|kind| self.rows(kind)), &|_, _| true, 1.0)
+        let all = |k: &Stiffness| (0..k.order() as u32).collect::<Vec<_>>();
+        let of = |k: &Stiffness| (k.diagonal_at(&all(k)), k.stiffest(), f64::INFINITY);
+        let coupled = || bodies.iter().map(|k| Coupled::of(*k, &all(k))).collect();
+        let trace = Trace::new(bodies.iter().map(of), &coupled);
+        led(&trace, RowKind::ALL.map(|kind| self.rows(kind)), &|_, _| true, 1.0)
     }
 
     /// The accuracy of rows that the host makes from coordinates: `data_accuracy`, raised to what the digits of the

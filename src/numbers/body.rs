@@ -62,3 +62,6 @@ pub const TRIFLE: f64 = 1e-6;
 pub const WEAK_SPRINGS: f64 = 1e-5;
 /// Largest p and q of a simple ratio p / q of two entries of K.
 pub const SIMPLE: [f64; 2] = [4096.0, 64.0];
+/// Stiffness relative to the neighbours from which an unknown is held by a penalty: chains, trusses, beams and solids have at
+/// most 4.5.
+pub const GROUNDED: f64 = 1e3;

@@ -10,8 +10,5 @@ pub const NEIGHBOURS: f64 = 0.5;
 pub const EXCUSED: f64 = 1e-2;
 /// Slip relative to its tolerance that stands for any larger one, against overflow.
 pub const OVERFLOW: f64 = 1e100;
-/// Stiffness relative to the neighbours from which an unknown is held by a penalty: chains, trusses, beams and solids have at
-/// most 4.5.
-pub const GROUNDED: f64 = 1e3;
 /// Shifts of A'A relative to its largest entry, one after the other: joints resist motions by more than the root of the last.
 pub const RESISTED: [f64; 5] = [0.3, 1e-3, 1e-6, 1e-9, 1e-13];

@@ -1,7 +1,7 @@
 //! The questions about bodies of islands, by their names.
 
-use crate::body::{asked, Answering, Bring, Name, Put};
-use crate::certificate::{Fit, Largest, Lend, LoadOf, Measure};
+use crate::body::{asked, Answering, Bring, Name, Put, Section};
+use crate::certificate::{Couple, Fit, Largest, Lend, LoadOf, Measure, SizeOfLoad};
 use crate::error::Result;
 use crate::ranks::damaged;
 use crate::solve::local::*;
@@ -12,17 +12,17 @@ pub fn taken(name: Name, from: &mut &[u8]) -> Result<Box<dyn Answering>> {
         ($($name:ident)+) => {
             match name {
                 $(Name::$name => asked::<$name>(from),)+
-                Name::Factorise | Name::Assemble | Name::Multiply | Name::Entries | Name::Solve | Name::Join => {
+                Name::Factorise | Name::Multiply | Name::Entries | Name::Solve | Name::NullSpace | Name::Join => {
                     Err(damaged())
                 }
             }
         };
     }
     of! {
-        Put Bring Fit Measure Largest Lend LoadOf
+        Put Bring Section Couple Fit Measure Largest SizeOfLoad Lend LoadOf
         Scale FromLoad Take Loaded Displace Turn Slide
         Begin Shift Strained Residual Correct Added PointAtRows Displacement Deformation
-        Rigid Split Along FreeMotions Place Energy Negate
+        Rebased Rigid Split Along FreeMotions Place Energy Negate
         Sizes Left Proof Work
     }
 }

@@ -4,13 +4,12 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::Pilots;
-use crate::certificate::{acting, everywhere, LoadOfWhole, Metric};
+use crate::body::{Away, InIsland, Pilots, Stiffness};
+use crate::certificate::{Coupled, Metric, Trace};
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual, Form};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, Shared, START};
-use crate::linalg::vector::weighted_norm;
 use crate::linalg::ByBody;
 use crate::model::{Lengths, Method, Preconditioning, Settings, SolvedModel};
 use crate::numbers::setup::{ASSEMBLED, ASSEMBLED_LUMPED};
@@ -35,6 +34,23 @@ struct WithRows {
     compliance: Vec<f64>,
 }
 
+impl WithRows {
+    /// What a body must know of the island.
+    fn told(&self, model: &SolvedModel, k: usize, pilots: Option<&Pilots>) -> InIsland {
+        let Self { island, rows, metric, .. } = self;
+        let carried = pilots.map_or(&[][..], |pilots| &pilots.carried);
+        let metric = metric.on(k);
+        InIsland {
+            touched: island.touched.on(k).to_vec(),
+            carried: carried.iter().map(|dof| *dof as u32).collect(),
+            metric: island.touched.dofs(k).map(|dof| metric[dof]).collect(),
+            unit: model.bodies[island.bodies[k]].body.without(island.unit),
+            island: island.unit,
+            balanced: !rows.coupled,
+        }
+    }
+}
+
 impl Prepared {
     /// True if factors and dual operators are up to date and as the options require.
     pub fn is_up_to_date(&self, model: &SolvedModel) -> bool {
@@ -51,8 +67,7 @@ impl Prepared {
         let lengths = model.lengths()?;
         lengths.check_empty_rows()?;
         if self.is_up_to_date(model) {
-            self.refresh(&lengths);
-            return Ok(());
+            return self.refresh(&lengths);
         }
         self.release();
         let islands = islands(model)?;
@@ -112,10 +127,10 @@ impl Prepared {
     }
 
     /// Updates what depends on gaps and loads.
-    pub fn refresh(&mut self, lengths: &Lengths) {
+    pub fn refresh(&mut self, lengths: &Lengths) -> Result<()> {
         let loads = self.duals.as_ref().map(|duals| self.loads_of_hosts(lengths.model(), &duals.islands));
         if let (Some(duals), Some(loads)) = (&mut self.duals, loads) {
-            duals.loads = loads;
+            duals.loads = loads?;
         }
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
         for ready in islands {
@@ -127,34 +142,7 @@ impl Prepared {
             own.rhs.clone_from(&level.rhs);
             own.taken.clone_from(&level.taken);
         }
-    }
-
-    /// `Duals::loads`
-    fn loads_of_hosts(&self, model: &SolvedModel, islands: &[Ready]) -> Vec<LoadOfWhole> {
-        let Some(parts) = &model.parts else { return Vec::new() };
-        let mut of_parts = vec![LoadOfWhole::default(); model.bodies.len()];
-        for ready in islands {
-            for (&p, metric) in ready.island.bodies.iter().zip(ready.metric.each()) {
-                let grounded = self.inverse(model, p).map_or(&[][..], |inverse| &inverse.grounded);
-                let load = model.bodies[p].body.load.as_ref().map_or(&[][..], |load| load);
-                let (mut own, mut largest) = (Vec::new(), 0.0);
-                for (i, f) in acting(load, grounded) {
-                    own.push(f / (metric[i] * ready.island.unit).sqrt());
-                    largest = f64::max(largest, f.abs());
-                }
-                of_parts[p] = LoadOfWhole { size: weighted_norm(&own, |_| 1.0), largest };
-            }
-        }
-        let of_host = |body: usize| match parts.only(body) {
-            Some(_) => LoadOfWhole::default(),
-            None => {
-                let own = &of_parts[parts.of(body)];
-                let sizes: Vec<f64> = own.iter().map(|of| of.size).collect();
-                let largest = own.iter().fold(0.0, |most: f64, of| most.max(of.largest));
-                LoadOfWhole { size: weighted_norm(&sizes, |_| 1.0), largest }
-            }
-        };
-        (0..parts.offsets.len() - 1).map(of_host).collect()
+        Ok(())
     }
 
     /// Forms F and G of every island.
@@ -187,24 +175,20 @@ impl Prepared {
             until: assembled(&model.settings),
             on_caller: model.on_caller(&all),
         };
-        let mut made: Vec<Option<Form>> = all.iter().map(|_| None).collect();
-        let mut questions = Vec::new();
-        for &p in &all {
-            if let Some((asking, form)) = drafts[island_of[p]].asking(number_in[p]) {
-                questions.push((p, asking));
-                made[p] = Some(form);
-            }
-        }
+        let joining = |p: usize| {
+            let (k, number) = (island_of[p], number_in[p]);
+            self.bodies[p].inverse.as_ref()?.kplus.elsewhere()?;
+            drafts[k].joining(number, islands[k].told(model, number, self.bodies[p].pilots.as_deref()))
+        };
+        let joins = watch.stops.interrupt.during(|| self.join(joining))?;
+        let mut made: Vec<Option<Form>> = all.iter().map(|&p| joins.form(p)).collect();
         let is_asked: Vec<bool> = made.iter().map(Option::is_some).collect();
-        let owed = watch.stops.interrupt.during(|| self.ask(questions))?;
         let assemble = |p: usize| match is_asked[p] {
             true => Ok(None),
             false => drafts[island_of[p]].assemble(number_in[p]).map_err(|e| e.body(p)),
         };
         watch.every_body(&part, assemble, |p, operator| made[p] = operator.or(made[p].take()))?;
-        for (p, answer) in owed.answers::<()>()? {
-            answer.map_err(|e| e.body(p))?;
-        }
+        let mut joined = joins.answers()?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
         let mut known = Shared::default();
         for (WithRows { island, rows, metric, compliance }, draft) in islands.into_iter().zip(drafts) {
@@ -212,26 +196,42 @@ impl Prepared {
             self.work.columns_computed += columns.computed;
             self.work.columns_kept += columns.kept;
             // Algorithm 3 uses the rigid modes without scaling, as in the paper
-            let operators = island.bodies.iter().map(|&p| made[p].take()).collect();
-            let dual = draft.finish(operators, compliance, !rows.coupled);
+            let (mut away, mut parts) = (Vec::new(), Vec::new());
+            for &p in &island.bodies {
+                let (own, coarse) = joined.remove(&p).unzip();
+                away.push(own);
+                parts.push((made[p].take(), coarse));
+            }
+            let dual = draft.finish(parts, compliance, !rows.coupled);
             let dual = known.share(dual.key(), dual, Dual::same);
             let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
-            let of_part = |part: usize| inverse(part).map(|of| (&of.kplus, &of.grounded));
+            let of_part = |part: usize| {
+                let missing = || Error::new(Kind::State, "a body has not been set up");
+                let inverse = inverse(part).ok_or_else(missing)?;
+                let grounded = match &inverse.grounded {
+                    Some(grounded) => Arc::clone(grounded),
+                    None => self.grounded(model, part)?,
+                };
+                Ok((&inverse.kplus, grounded))
+            };
             let whole = Whole::of(model, &island, &of_part)?;
+            let some_away = away.iter().any(Option::is_some);
+            let away: Box<[Option<Away>]> = if some_away { away.into() } else { Box::default() };
+            let metric = if some_away { Arc::new(metric.only(|k| away[k].is_none())) } else { metric };
+            let apart = (some_away || whole.is_some()).then(|| Box::new(Apart { whole, away }));
             let pairs = (!island.friction.is_empty()).then(Box::default);
             ready.push(Ready {
                 island,
                 dual,
                 rows,
                 metric,
-                apart: whole.map(|whole| Box::new(Apart { whole: Some(whole), ..Apart::default() })),
+                apart,
                 preconditioner: None,
                 kept: BetweenSolves::default(),
                 pairs,
             });
         }
-        self.join(model, &mut ready)?;
-        let loads = self.loads_of_hosts(model, &ready);
+        let loads = self.loads_of_hosts(model, &ready)?;
         Ok(Duals { of: model.revisions, islands: ready, operators, island_of, loads })
     }
 }
@@ -255,9 +255,20 @@ fn metric(model: &SolvedModel, island: &Island) -> Result<(Metric, ByBody)> {
         Some((body.k()?, body.without(island.unit)))
     };
     let bodies: Vec<_> = island.bodies.iter().filter_map(of_body).collect();
+    let touched = &island.touched;
+    let each =
+        || bodies.iter().enumerate().map(|(k, (stiffness, without))| (stiffness, *without, touched.on(k)));
+    let of =
+        |(k, without, touched): (&Stiffness, f64, &[u32])| (k.diagonal_at(touched), k.stiffest(), without);
+    let coupled = || each().map(|(k, _, touched)| Coupled::of(*k, touched)).collect();
+    let trace = Trace::new(each().map(of), &coupled);
     let rows = RowKind::ALL.map(|kind| &island.members(kind).rows);
-    let at_rows = Metric::of(&bodies, &island.touched, rows, &|_, _| true, island.unit)?;
-    let all = everywhere(&bodies, (&island.ranges, &island.touched), &at_rows.values, island.unit)?;
+    let at_rows = Metric::of(&trace, rows, &|_, _| true, island.unit)?;
+    let everywhere = |(k, without, _): (&Stiffness, f64, _)| -> Vec<f64> {
+        (0..k.order()).map(|i| k.metric(i, without) / island.unit).collect()
+    };
+    let mut all = ByBody::from_each(&island.ranges, each().map(everywhere), "the metric of an island")?;
+    touched.set(&at_rows.values, &mut all);
     Ok((at_rows, all))
 }
 

@@ -3,8 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::sync::{Arc, Mutex};
 
-use crate::body::{Elsewhere, Factorised, GeneralizedInverse, Made, Owed, Plan, Symbolic, Token};
-use crate::certificate::grounded;
+use crate::body::{grounded, Elsewhere, Factorised, GeneralizedInverse, Made, Owed, Plan, Symbolic, Token};
 use crate::error::{Error, Kind, Result};
 use crate::model::SolvedModel;
 use crate::numbers::setup::{FACTORISED, WORK};
@@ -191,7 +190,7 @@ impl Prepared {
             };
             self.bodies[p].symbolic = self.bodies[q].symbolic.clone();
             let (unit, kplus, bytes) = (model.bodies[p].body.unit(), Arc::new(kplus), of.bytes);
-            let grounded = self.grounded(model, p)?;
+            let grounded = kplus.elsewhere().is_none().then(|| self.grounded(model, p)).transpose()?;
             all.insert((p, ranks[p]), Arc::new(Inverse { unit, kplus, grounded, bytes }));
         }
         Ok(all)
@@ -204,7 +203,9 @@ impl Prepared {
         made: Vec<OfBody>,
         ranks_of: &HashMap<usize, BTreeSet<usize>>,
     ) -> Result<OnRanks> {
-        let grounded = threads::run(model.threads(), made.len(), |k| self.grounded(model, made[k].body))?;
+        let grounded = threads::run(model.threads(), made.len(), |k| {
+            (made[k].rank == 0).then(|| self.grounded(model, made[k].body)).transpose()
+        })?;
         let mut all = OnRanks::default();
         for (OfBody { body: p, rank, of, planned }, grounded) in made.into_iter().zip(grounded) {
             let mut bytes = planned.saturating_sub(of.inverse.bytes_saved());
@@ -222,7 +223,7 @@ impl Prepared {
     }
 
     /// Unknowns of a body that its matrix holds so stiffly that neighbours are negligible; not those that rows carry.
-    fn grounded(&self, model: &SolvedModel, p: usize) -> Result<Arc<[u32]>> {
+    pub(super) fn grounded(&self, model: &SolvedModel, p: usize) -> Result<Arc<[u32]>> {
         let matrix = model.bodies[p].body.stiffness.as_deref();
         let mut held = matrix.map_or(Ok(Vec::new()), |k| grounded(k.into()))?;
         if let Some(pilots) = &self.bodies[p].pilots {

@@ -43,7 +43,7 @@ impl Prepared {
 
     /// Dimension of the null space of a body; six if it is not known yet.
     fn modes(&self, model: &SolvedModel, body: usize) -> usize {
-        let found = self.inverse(model, body).map(|inverse| inverse.kplus.null_space.cols);
+        let found = self.inverse(model, body).map(|inverse| inverse.kplus.motions());
         let given = model.bodies[body].body.null_space.as_ref().map(|given| given.vectors.cols);
         found.or(given).unwrap_or(6)
     }

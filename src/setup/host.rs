@@ -38,7 +38,7 @@ impl Prepared {
             let bytes = 2 * TOGETHER * size_of::<f64>() * model.bodies[p].body.order;
             let unit = model.bodies[p].body.unit();
             let inverse = made.map(|made| {
-                let (kplus, grounded) = (Arc::new(made), Arc::from([]));
+                let (kplus, grounded) = (Arc::new(made), Some(Arc::from([])));
                 Arc::new(Inverse { unit, kplus, grounded, bytes })
             });
             self.bodies[p].inverse = inverse;

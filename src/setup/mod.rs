@@ -8,6 +8,7 @@ mod host;
 mod islands;
 mod join;
 mod lending;
+mod locals;
 mod memory_limit;
 mod operators;
 mod plans;

@@ -48,8 +48,8 @@ pub struct PreparedBody {
 pub struct Inverse {
     pub unit: f64,
     pub kplus: Arc<GeneralizedInverse>,
-    /// Grounded unknowns of the matrix, which the certificate judges separately, ascending.
-    pub grounded: Arc<[u32]>,
+    /// Grounded unknowns of the matrix, which the certificate judges separately, ascending; none if K+ is on another rank.
+    pub grounded: Option<Arc<[u32]>>,
     pub bytes: usize,
 }
 

@@ -1,14 +1,12 @@
 //! The dual problem of an island, ready for any load and gap.
 
-use std::ops::Range;
 use std::sync::Arc;
 
-use crate::body::Token;
+use crate::body::Away;
 use crate::dual::{Dual, Preconditioner};
 use crate::error::Result;
 use crate::linalg::ByBody;
 use crate::model::Preconditioning;
-use crate::platform::memory::zeros;
 use crate::platform::threads;
 use crate::qp::friction::PairsBetween;
 use crate::qp::BetweenSolves;
@@ -25,7 +23,7 @@ pub struct Ready {
     pub island: Box<Island>,
     pub dual: Arc<Dual>,
     pub rows: Arc<DualRows>,
-    /// `D~ / 2^p` over the unknowns.
+    /// `D~ / 2^p` over the unknowns of the bodies that are here.
     pub metric: Arc<ByBody>,
     /// What few islands have.
     pub(super) apart: Option<Box<Apart>>,
@@ -37,12 +35,11 @@ pub struct Ready {
     pub pairs: Option<Box<PairsBetween>>,
 }
 
-#[derive(Default)]
 pub(super) struct Apart {
     /// The island in terms of the host's bodies, if its own bodies are pieces of them.
     pub whole: Option<Whole>,
-    /// The names of its bodies that other ranks have.
-    pub elsewhere: Box<[Option<Token>]>,
+    /// Its bodies on other ranks; empty if there are none.
+    pub away: Box<[Option<Away>]>,
 }
 
 impl Ready {
@@ -51,9 +48,9 @@ impl Ready {
         self.apart.as_ref()?.whole.as_ref()
     }
 
-    /// The names of its bodies that other ranks have; empty if there are none.
-    pub fn elsewhere(&self) -> &[Option<Token>] {
-        self.apart.as_ref().map_or(&[], |apart| &apart.elsewhere)
+    /// Body k, if another rank has it.
+    pub fn away(&self, k: usize) -> Option<&Away> {
+        self.apart.as_ref()?.away.get(k)?.as_ref()
     }
 
     /// The option of the present preconditioner.
@@ -82,16 +79,6 @@ impl Ready {
         let in_parallel =
             |count, task: &(dyn Fn(usize) -> _ + Sync)| threads::run_apart(threads, count, on_caller, task);
         self.dual.distances(moved, x, alpha, &in_parallel)
-    }
-
-    /// `R a`
-    pub fn rigid_motion(&self, a: &[f64]) -> Result<Vec<Vec<f64>>> {
-        let of_body = |(p, range): (usize, &Range<usize>)| {
-            let mut v = zeros(range.len(), "a motion")?;
-            self.dual.add_rigid_motion(p, a, &mut v);
-            Ok(v)
-        };
-        self.island.ranges.iter().enumerate().map(of_body).collect()
     }
 
     /// A load where rows touch without `B'x`, through the rows and forces of the host: if these cancel, the result is exactly 0.

@@ -1,15 +1,17 @@
 //! One island with the data of the host.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::body::{Kept, Local, Locals};
+use crate::body::{Kept, Locals};
 use crate::certificate::{Data, Lend, Load};
 use crate::constraints::RowKind;
-use crate::error::{Error, Kind, Result};
+use crate::error::Result;
 use crate::linalg::vector::norm_max;
 use crate::model::SolvedModel;
 use crate::platform::memory::zeros;
 use crate::setup::{Island, Prepared, Ready};
+use crate::solve::local::Along;
 use crate::solve::method::DualMethod;
 
 /// All inputs for the solution of one island: the data of the host and the results of setup.
@@ -52,23 +54,14 @@ impl<'a> Case<'a> {
 
     /// The bodies of the island.
     pub fn locals(&self) -> Result<Locals<'a>> {
-        let missing = || Error::new(Kind::State, "a body has not been set up");
-        let Self { model, prepared, ready, .. } = *self;
-        let Island { bodies, touched, unit, .. } = &*ready.island;
-        let local = |(k, &p): (usize, &usize)| {
-            let (body, inverse) = (&model.bodies[p].body, prepared.inverse(model, p).ok_or_else(missing)?);
-            Ok(Local {
-                stiffness: body.k().ok_or_else(missing)?,
-                null_space: &inverse.kplus.null_space,
-                soft: inverse.kplus.is_soft(),
-                unit: body.without(*unit),
-                grounded: &inverse.grounded,
-                touched: touched.on(k),
-                dual: Some(ready.dual.local(k, *unit, ready.metric.on(k))),
-            })
-        };
-        let bodies = bodies.iter().enumerate().map(local).collect::<Result<_>>()?;
-        Ok(Locals::new(bodies, ready.elsewhere(), self.threads()))
+        self.prepared.locals(self.model, self.ready)
+    }
+
+    /// `R a`, over the unknowns of all bodies: for the host.
+    pub fn rigid_motion(&self, a: &[f64]) -> Result<Vec<Vec<f64>>> {
+        let (bodies, dual) = (self.locals()?, &self.ready.dual);
+        let (_, v) = bodies.make(|p| Along { a: Some(a[dual.modes_of(p)].to_vec()) }, ())?;
+        Ok(bodies.bring(&v)?.into_iter().map(Cow::into_owned).collect())
     }
 
     /// The loads of the bodies.

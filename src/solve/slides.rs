@@ -107,7 +107,7 @@ impl Recovery<'_> {
         slides.all.clear();
         slides.of_body.fill(None);
         let along = |p: usize| Along { a: moves[p].then(|| self.of_modes(p, &slides.amplitudes)) };
-        for (p, moved) in bodies.ask(along, ())?.into_iter().enumerate() {
+        for (p, moved) in bodies.make(along, ())?.0.into_iter().enumerate() {
             let range = self.data.touched.range(p);
             match moved {
                 Some(moved) => {

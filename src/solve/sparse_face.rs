@@ -9,7 +9,6 @@
 
 use std::sync::Arc;
 
-use crate::body;
 use crate::body::{Distributed, Locals};
 use crate::certificate::Data;
 use crate::constraints::Touched;
@@ -20,7 +19,7 @@ use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, weighted_norm, NOISE};
 use crate::linalg::{ByBody, Csr, Symmetric};
 use crate::numbers::solve::{LEAST_COMPLIANCE, STIFFER};
-use crate::platform::memory::{copied, zeros};
+use crate::platform::memory::{copied, reserved, zeros};
 use crate::platform::{interrupt, tally};
 use crate::qp::{Interior, Inverse, Point, Stiffness};
 use crate::setup::Ready;
@@ -41,7 +40,7 @@ pub struct SparseFaces<'a> {
     rows: Csr,
     compliance: &'a [f64],
     /// D / 2^p
-    metric: &'a [f64],
+    metric: Vec<f64>,
     /// c
     least: Vec<f64>,
     gram: Gram,
@@ -103,20 +102,22 @@ impl Stiffness for &SparseFaces<'_> {
 impl<'a> SparseFaces<'a> {
     /// None if some K is not given by its entries, or rows are wide.
     pub fn of(ready: &'a Ready, data: &Data<'a>) -> Result<Option<Self>> {
-        let (given, metric) = (&ready.rows.matrix, ready.metric.in_sequence());
+        let given = &ready.rows.matrix;
         let wide = |i: usize| given.ptr[i + 1] - given.ptr[i] > WIDE;
         if (0..given.rows()).any(wide) {
             return Ok(None);
         }
-        let (touched, ranges) = (data.touched, &ready.island.ranges);
-        let mut rows = Csr::with_room(metric.len(), given.rows(), given.val.len());
+        let (touched, ranges, n) = (data.touched, &ready.island.ranges, ready.island.unknowns());
+        let Some(bodies) = data.bodies.sections()? else { return Ok(None) };
+        let mut rows = Csr::with_room(n, given.rows(), given.val.len());
         let unknown = |j: usize| ranges[touched.body_of(j)].start + touched.dof(j);
         (0..given.rows()).for_each(|i| rows.push_row(given.row(i).map(|(j, v)| (unknown(j), v))));
         let gram = Gram::of(&rows)?;
         let (pattern, unit) = (gram.pattern(), ready.island.unit);
-        let mut k = Symmetric::with_room(metric.len(), pattern.col.len(), WHAT)?;
-        for (body, range) in data.bodies.iter().zip(&**ranges) {
-            let body::Stiffness::Matrix(own) = body.stiffness else { return Ok(None) };
+        let mut metric = reserved(n, WHAT)?;
+        let mut k = Symmetric::with_room(n, pattern.col.len(), WHAT)?;
+        for ((own, of_body), range) in bodies.iter().zip(&**ranges) {
+            metric.extend_from_slice(of_body);
             for i in 0..own.order() {
                 let stiff = own.lower_row(i).map(|(j, v)| (range.start + j, v / unit));
                 k.push_row(merged(stiff, pattern.lower_row(range.start + i).map(|(j, _)| (j, 0.0))));
@@ -126,7 +127,7 @@ impl<'a> SparseFaces<'a> {
             let stiffest = rows.row(i).map(|(j, _)| metric[j]).fold(0.0, f64::max);
             rows.row(i).map(|(_, b)| b * b).fold(0.0, f64::max) / (STIFFER * stiffest)
         });
-        let analysis = Arc::new(Analysis::new(&k, &vec![false; metric.len()])?);
+        let analysis = Arc::new(Analysis::new(&k, &vec![false; n])?);
         let (least, compliance) = (least.collect(), &ready.dual.compliance[..rows.rows()]);
         let bodies = data.bodies.clone();
         Ok(Some(Self { bodies, ranges, touched, rows, compliance, metric, least, gram, k, analysis }))

@@ -1,6 +1,6 @@
 //! A point of the finish: forces and displacements in two doubles, corrected on one face by the residuals of the host's data.
 
-use crate::body::{Distributed, Kept, Local};
+use crate::body::{Distributed, Kept, Seen};
 use crate::certificate::NOISE;
 use crate::error::Result;
 use crate::linalg::twofold::TwofoldVector;
@@ -129,11 +129,11 @@ impl SplitPoint {
     /// D even at carried unknowns.
     pub fn settle(&mut self, recovery: &Recovery, face: &Face) -> Result<()> {
         let (rows, bounded) = (&recovery.ready.rows.matrix, &recovery.scaled.gaps.bounded);
-        let (touched, bodies) = (recovery.data.touched, &recovery.data.bodies);
-        let of_body = |(p, body): (usize, &Local)| -> Vec<f64> {
-            touched.dofs(p).map(|dof| body.stiffness.metric(dof, body.unit)).collect()
+        let of_body = |body: &Seen| {
+            let stiff = |d: &f64| Some(*d).filter(|d| *d > 0.0).unwrap_or(body.unit());
+            body.diagonal().iter().map(stiff).collect::<Vec<f64>>()
         };
-        let stiffness: Vec<f64> = bodies.iter().enumerate().flat_map(of_body).collect();
+        let stiffness: Vec<f64> = recovery.data.bodies.iter().flat_map(of_body).collect();
         // a spring of a body depends on no row
         let weight = |&i: &usize| {
             let of_row = |i: usize| rows.row(i).map(|(j, v)| v * v / stiffness[j]).sum::<f64>();

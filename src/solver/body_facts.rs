@@ -127,7 +127,7 @@ impl Problem {
             return None;
         }
         let null_space = match is_cut {
-            false => self.inverses(body).map(|of| of.kplus.null_space.cols).sum(),
+            false => self.inverses(body).map(|of| of.kplus.motions()).sum(),
             true => null_space_of(&self.prepared, self.parts()?, body)?.cols,
         };
         let others = 0..self.model.bodies.len();

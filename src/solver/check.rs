@@ -41,7 +41,7 @@ impl Problem {
         let Self { model: host, decomposition, prepared, .. } = self;
         let model = solved(host, decomposition);
         host.lengths()?.check_empty_rows()?;
-        prepared.refresh(&model.lengths()?);
+        prepared.refresh(&model.lengths()?)?;
         let counts = host.sizes();
         let lengths = [
             ("n", u, counts.dofs),

@@ -38,9 +38,12 @@ impl Problem {
         self.set_up_parts(body)?;
         let mut all = Matrix::zeros(order, 0)?;
         for (part, inverse) in self.parts_of(body).zip(self.inverses(body)) {
-            let own = &inverse.kplus.null_space;
+            let own = inverse.kplus.bring_null_space()?;
             if own.rows == order {
-                return Ok((own.cols, Cow::from(&own.data)));
+                return Ok(match own {
+                    Cow::Borrowed(own) => (own.cols, Cow::from(&own.data)),
+                    Cow::Owned(own) => (own.cols, Cow::from(own.data)),
+                });
             }
             for j in 0..own.cols {
                 let mut column = zeros(order, "a null space")?;
@@ -82,7 +85,7 @@ impl Problem {
         self.set_up_parts(body)?;
         let mut all = zeros(y.len(), "a product with K+")?;
         for (part, inverse) in self.parts_of(body).zip(self.inverses(body)) {
-            let places = || (0..inverse.kplus.null_space.rows).map(|i| self.place(part, i));
+            let places = || (0..inverse.kplus.order()).map(|i| self.place(part, i));
             let mut own: Vec<f64> = places().map(|i| x[i]).collect();
             inverse.kplus.apply_in_place(&mut own)?;
             places().zip(&own).for_each(|(i, v)| all[i] = v / inverse.unit);

@@ -36,7 +36,8 @@ impl Problem {
             return Err(Error::argument("k", what).index(k as i64).limit(all.len() as f64));
         };
         let ready = &self.prepared.done(&self.model)?.islands[*island];
-        let own = ready.rigid_motion(amplitudes)?;
+        let case = Case { model: self.solved(), prepared: &self.prepared, ready, method: None };
+        let own = case.rigid_motion(amplitudes)?;
         let mut v = zeros(self.solved().sizes().dofs, "an open motion")?;
         ready.island.scatter(self.solved(), own, &mut v);
         if let Some(parts) = self.parts() {

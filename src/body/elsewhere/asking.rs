@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::Csr;
 use crate::ranks::{damaged, message, value, wire_enum, wire_struct, Asked, Ranks, Request, Wire};
 
 /// Requests of this number are lists of questions about bodies; the answer is the list of answers, each perhaps an error.
@@ -29,21 +28,24 @@ macro_rules! names {
 names! {
     /// `Factorise`: keep a K+. Answer: `Made`.
     Factorise,
-    /// [`Assemble`]: keep `B K+ B'`. Answer: nothing.
-    Assemble,
     /// [`Multiply`]. Answer: `B K+ B' x`.
     Multiply,
     /// [`Entries`]. Answer: the entries of `B K+ B'` in these rows and columns.
     Entries,
     /// [`Solve`]. Answer: `K+ x`.
     Solve,
-    /// `Join`: keep a body of an island. Answer: nothing. The names below are questions about such a body (`local::Question`).
+    /// [`NullSpace`]. Answer: `R_p`.
+    NullSpace,
+    /// `Join`: keep a body of an island, and its dual operator. Answer: `Joined`. The names below are questions about such a body (`local::Question`).
     Join,
     Put,
     Bring,
+    Section,
+    Couple,
     Fit,
     Measure,
     Largest,
+    SizeOfLoad,
     Lend,
     LoadOf,
     Scale,
@@ -62,6 +64,7 @@ names! {
     PointAtRows,
     Displacement,
     Deformation,
+    Rebased,
     Rigid,
     Split,
     Along,
@@ -73,14 +76,6 @@ names! {
     Left,
     Proof,
     Work,
-}
-
-/// `B K+ B'` is assembled if `explicit`; otherwise K+ and B are kept.
-pub struct Assemble {
-    pub kplus: u64,
-    pub form: u64,
-    pub explicit: bool,
-    pub rows: Arc<Csr>,
 }
 
 /// Not `exact`: by the factor alone, which may be rounded.
@@ -102,10 +97,14 @@ pub struct Solve {
     pub x: Vec<f64>,
 }
 
-wire_struct!(Assemble { kplus, form, explicit, rows });
 wire_struct!(Multiply { form, exact, x });
 wire_struct!(Entries { form, rows });
 wire_struct!(Solve { kplus, exact, x });
+wire_struct!(NullSpace { kplus });
+
+pub struct NullSpace {
+    pub kplus: u64,
+}
 
 /// A question to one rank.
 pub struct Asking {

@@ -1,13 +1,15 @@
 //! K+ and dual operators that another rank keeps: their names, and what rank 0 knows and asks of them.
 
 mod asking;
+mod joining;
 
-pub use asking::{ask, Asking, Assemble, Entries, Multiply, Name, Owed, Solve, ABOUT_BODIES};
+pub use asking::{ask, Asking, Entries, Multiply, Name, NullSpace, Owed, Solve, ABOUT_BODIES};
+pub use joining::{Away, InIsland, Join, Joined, Joining};
 
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::{Csr, Packed};
+use crate::linalg::{Matrix, Packed};
 use crate::ranks::{damaged, Token, Wire};
 
 /// A K+ that another rank keeps, with its corrections for carried motions.
@@ -16,6 +18,7 @@ pub struct Elsewhere {
     pub(super) kplus: Arc<Token>,
     /// Name of the K+ whose factor it uses: equal for all that share the factor.
     pub factor: u64,
+    pub(super) motions: usize,
     pub(super) entries: usize,
     pub(super) is_rounded: bool,
     pub(super) carried: usize,
@@ -24,8 +27,8 @@ pub struct Elsewhere {
 
 /// `B K+ B'` that another rank keeps.
 pub struct FormElsewhere {
-    token: Token,
-    order: usize,
+    pub(super) token: Token,
+    pub(super) order: usize,
     /// It is assembled there.
     pub explicit: bool,
 }
@@ -41,11 +44,10 @@ impl Elsewhere {
         Ok(())
     }
 
-    /// `B K+ B'`, brought here.
-    pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
-        let (asking, form) = self.operator(&Arc::new(rows.clone()), false);
-        alone::<()>(&self.kplus, asking)?;
-        form.block((0..rows.rows()).collect())
+    /// `R_p`, n x r.
+    pub fn null_space(&self) -> Result<Matrix> {
+        let of = NullSpace { kplus: self.name() };
+        alone(&self.kplus, Asking::new(self.rank(), Name::NullSpace, &of))
     }
 
     /// The rank that keeps it.
@@ -55,13 +57,6 @@ impl Elsewhere {
 
     pub(super) fn name(&self) -> u64 {
         self.kplus.number
-    }
-
-    /// The question for `B K+ B'`, to be kept there, and what stands for it here; assembled if `explicit`.
-    pub fn operator(&self, rows: &Arc<Csr>, explicit: bool) -> (Asking, FormElsewhere) {
-        let (token, order) = (self.kplus.ranks.token(self.rank()), rows.rows());
-        let of = Assemble { kplus: self.name(), form: token.number, explicit, rows: Arc::clone(rows) };
-        (Asking::new(self.rank(), Name::Assemble, &of), FormElsewhere { token, order, explicit })
     }
 
     /// The question for `K+ x`; not `exact`: by the factor alone.

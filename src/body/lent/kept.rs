@@ -3,10 +3,12 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::body::elsewhere::{Assemble, Entries, Multiply, Name, Solve};
+use crate::body::elsewhere::{Entries, Join, Joined, Multiply, Name, NullSpace, Solve};
 use crate::body::generalized_inverse::GeneralizedInverse;
+use crate::body::given::Stiffness;
+use crate::body::grounded::grounded;
 use crate::body::lent::asked::Answering;
-use crate::body::lent::member::{Join, Member, WithMatrix};
+use crate::body::lent::member::{Member, WithMatrix};
 use crate::body::lent::{Factorise, Made};
 use crate::body::store::Store;
 use crate::error::{Error, Kind, Result};
@@ -78,10 +80,10 @@ impl Bodies {
         self.asked[name as usize].fetch_add(1, Ordering::Relaxed);
         let task = match name {
             Name::Factorise => Task::Factorise(Wire::take(from)?),
-            Name::Assemble => Task::Assemble(Wire::take(from)?),
             Name::Multiply => Task::Multiply(Wire::take(from)?),
             Name::Entries => Task::Entries(Wire::take(from)?),
             Name::Solve => Task::Solve(Wire::take(from)?),
+            Name::NullSpace => Task::NullSpace(Wire::take(from)?),
             Name::Join => Task::Join(Wire::take(from)?),
             name => Task::Ask((self.taken)(name, from)?),
         };
@@ -95,7 +97,6 @@ impl Bodies {
         let form = |name| self.store.find::<Form>(name);
         match task {
             Task::Factorise(of) => sent(self.factorise(of)),
-            Task::Assemble(of) => sent(self.assemble(of)),
             Task::Multiply(Multiply { form: name, exact, x }) => {
                 sent(form(name).and_then(|form| form.product(&x, exact)))
             }
@@ -103,6 +104,9 @@ impl Bodies {
                 sent(form(name).and_then(|form| form.block(&rows)))
             }
             Task::Solve(of) => sent(self.solve(of)),
+            Task::NullSpace(NullSpace { kplus }) => {
+                sent(self.kplus(kplus).map(|of| of.kplus.null_space.clone()))
+            }
             Task::Join(of) => sent(self.join(of)),
             Task::Ask(of) => of.answered(&self.store),
         }
@@ -118,7 +122,8 @@ impl Bodies {
         if let Some(of) = of {
             let made = plan.with_factor_of(&self.kplus(of)?.kplus)?;
             let told = Made::of_shared(&made);
-            self.store.keep(kplus, WithMatrix { kplus: Arc::new(made), k });
+            let grounded = grounded(Stiffness::Matrix(&k))?;
+            self.store.keep(kplus, WithMatrix { kplus: Arc::new(made), k, grounded });
             return Ok(told);
         }
         let (planned, rounds) = (plan.symbolic().cloned(), rounded.then(|| plan.matrix().clone()));
@@ -127,39 +132,39 @@ impl Bodies {
             made.inverse = made.inverse.rounded(&k, &Slabs::of(0)?)?;
         }
         let told = Made::of(&made, planned.as_ref());
-        self.store.keep(kplus, WithMatrix { kplus: Arc::new(made.inverse), k });
+        let grounded = grounded(Stiffness::Matrix(&k))?;
+        self.store.keep(kplus, WithMatrix { kplus: Arc::new(made.inverse), k, grounded });
         Ok(told)
-    }
-
-    fn assemble(&self, Assemble { kplus, form, explicit, rows }: Assemble) -> Result<()> {
-        let made = Form::of(Arc::clone(&self.kplus(kplus)?.kplus), rows, explicit)?;
-        self.store.keep(form, made);
-        Ok(())
     }
 
     fn solve(&self, Solve { kplus, exact, mut x }: Solve) -> Result<Vec<f64>> {
         let kplus = &self.kplus(kplus)?.kplus;
-        if x.len() != kplus.null_space.rows {
+        if x.len() != kplus.order() {
             return Err(damaged());
         }
         kplus.solve_in_place(exact, &mut x)?;
         Ok(x)
     }
 
-    fn join(&self, of: Join) -> Result<()> {
+    fn join(&self, mut of: Join) -> Result<Joined> {
         let (name, with) = (of.member, self.kplus(of.kplus)?);
-        self.store.keep(name, Member::new(with, of)?);
-        Ok(())
+        if let Some(new) = of.form.take() {
+            let form = Form::of(&with.kplus, &of.rows, new.explicit, new.rows)?;
+            self.store.keep(new.name, form);
+        }
+        let (member, joined) = Member::new(with, of)?;
+        self.store.keep(name, member);
+        Ok(joined)
     }
 }
 
 /// A question with its data.
 enum Task {
     Factorise(Factorise),
-    Assemble(Assemble),
     Multiply(Multiply),
     Entries(Entries),
     Solve(Solve),
+    NullSpace(NullSpace),
     Join(Join),
     Ask(Box<dyn Answering>),
 }
@@ -171,8 +176,21 @@ enum Form {
 }
 
 impl Form {
-    fn of(kplus: Arc<GeneralizedInverse>, rows: Arc<Csr>, explicit: bool) -> Result<Self> {
-        Ok(if explicit { Self::Explicit(kplus.inverse_form(&rows)?) } else { Self::Implicit { kplus, rows } })
+    /// For these of the rows, or all.
+    fn of(
+        kplus: &Arc<GeneralizedInverse>,
+        rows: &Arc<Csr>,
+        explicit: bool,
+        of: Option<Vec<usize>>,
+    ) -> Result<Self> {
+        let rows = match of {
+            None => Arc::clone(rows),
+            Some(of) => Arc::new(selected(rows, &of)?),
+        };
+        Ok(match explicit {
+            true => Self::Explicit(kplus.inverse_form(&rows)?),
+            false => Self::Implicit { kplus: Arc::clone(kplus), rows },
+        })
     }
 
     fn order(&self) -> usize {
@@ -200,22 +218,28 @@ impl Form {
     }
 
     fn block(&self, rows: &[usize]) -> Result<Packed> {
-        if rows.iter().any(|row| *row >= self.order()) {
-            return Err(damaged());
-        }
         match self {
             Self::Explicit(form) => {
+                if rows.iter().any(|row| *row >= form.order()) {
+                    return Err(damaged());
+                }
                 let mut packed = Packed::zeros(rows.len())?;
                 for (k, &i) in rows.iter().enumerate() {
                     rows[..=k].iter().enumerate().for_each(|(l, &j)| packed.add(k, l, form.get(i, j)));
                 }
                 Ok(packed)
             }
-            Self::Implicit { kplus, rows: all } => {
-                let mut selected = Csr::empty(all.cols);
-                rows.iter().for_each(|&i| selected.push_row(all.row(i)));
-                kplus.inverse_form(&selected)
-            }
+            Self::Implicit { kplus, rows: all } => kplus.inverse_form(&selected(all, rows)?),
         }
     }
+}
+
+/// These of the rows.
+fn selected(rows: &Csr, of: &[usize]) -> Result<Csr> {
+    if of.iter().any(|row| *row >= rows.rows()) {
+        return Err(damaged());
+    }
+    let mut selected = Csr::empty(rows.cols);
+    of.iter().for_each(|&i| selected.push_row(rows.row(i)));
+    Ok(selected)
 }

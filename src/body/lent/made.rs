@@ -13,7 +13,8 @@ use crate::ranks::{wire_struct, Token};
 
 /// The fields of a `Factorised`, without its factor.
 pub struct Made {
-    null_space: Matrix,
+    order: usize,
+    motions: usize,
     stiffness: Vec<f64>,
     rounding: f64,
     error: f64,
@@ -33,7 +34,8 @@ pub struct Made {
 }
 
 wire_struct!(Made {
-    null_space,
+    order,
+    motions,
     stiffness,
     rounding,
     error,
@@ -66,7 +68,8 @@ impl Made {
     /// Of a K+ with the factor of another.
     pub fn of_shared(kplus: &GeneralizedInverse) -> Self {
         Self {
-            null_space: kplus.null_space.clone(),
+            order: kplus.order(),
+            motions: kplus.motions(),
             stiffness: kplus.stiffness.clone(),
             rounding: kplus.rounding,
             error: kplus.error,
@@ -87,11 +90,11 @@ impl Made {
 
     /// What stands for it on rank 0. `factor`: the name of the K+ whose factor it uses; `planned`: the analysis of the plan.
     pub fn at(self, kplus: Arc<Token>, factor: u64, planned: &Arc<Symbolic>) -> Factorised {
-        let Self { entries, is_rounded, carried, bytes_saved, .. } = self;
-        let elsewhere = Elsewhere { kplus, factor, entries, is_rounded, carried, bytes_saved };
+        let Self { order, motions, entries, is_rounded, carried, bytes_saved, .. } = self;
+        let elsewhere = Elsewhere { kplus, factor, motions, entries, is_rounded, carried, bytes_saved };
         Factorised {
             inverse: GeneralizedInverse {
-                null_space: self.null_space,
+                null_space: Matrix { rows: order, cols: 0, data: Vec::new() },
                 stiffness: self.stiffness,
                 rounding: self.rounding,
                 error: self.error,

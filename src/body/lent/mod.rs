@@ -9,7 +9,6 @@ mod member;
 pub use asked::{asked, Answering};
 pub use kept::Bodies;
 pub use made::Made;
-pub use member::Join;
 
 use std::sync::Arc;
 
@@ -58,12 +57,6 @@ impl Lending {
     /// Asks these questions about these bodies, one request to each rank.
     pub fn ask(&self, questions: Vec<(usize, Asking)>) -> Result<Owed> {
         ask(&self.ranks, questions)
-    }
-
-    /// The question for a body of an island whose K+ is there, and its name.
-    pub fn joining(&self, of: &Elsewhere, join: impl FnOnce(u64, u64) -> Join) -> (Asking, Token) {
-        let token = self.ranks.token(of.rank());
-        (Asking::new(of.rank(), Name::Join, &join(token.number, of.name())), token)
     }
 
     /// The question for a K+ by this plan, and its name: with the factor of `of` if given; otherwise with one of its own, which may be

@@ -6,9 +6,10 @@ mod measured;
 pub use measured::{Measure, Measured};
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use crate::body::{wire_struct, wire_unit, Local, Name, Question};
-use crate::certificate::{Load, NOISE};
+use crate::certificate::{acting, Load, LoadOfWhole, NOISE};
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm_max, weighted_norm};
 use crate::linalg::Matrix;
@@ -21,6 +22,7 @@ wire_struct!(Told { unit, without, metric, led, carried, push, push_terms, passe
 wire_struct!(Fit { told });
 wire_struct!(Fitted { amplitudes, motions, unit, grounded, load, sizes });
 wire_struct!(Sizes { load, push, all, terms, led, noise, moved });
+wire_struct!(SizeOfLoad { load });
 wire_struct!(Lend { load });
 
 /// What rows do to a body, at the t unknowns that they touch.
@@ -156,6 +158,28 @@ impl Question for LoadOf {
 
     fn answer(&self, body: &Local, _: &mut (), load: &Load) -> Result<Vec<f64>> {
         load.everywhere(body.order())
+    }
+}
+
+/// Asks for the size of a load, for the body of the host of which the body is a part.
+pub struct SizeOfLoad {
+    pub load: Option<Arc<[f64]>>,
+}
+
+impl Question for SizeOfLoad {
+    const NAME: Name = Name::SizeOfLoad;
+    type Answer = LoadOfWhole;
+    type Kept = ();
+    type Given = ();
+
+    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<LoadOfWhole> {
+        let dual = body.dual()?;
+        let (mut own, mut largest) = (Vec::new(), 0.0);
+        for (i, f) in acting(self.load.as_deref().unwrap_or_default(), body.grounded) {
+            own.push(f / (dual.metric[i] * dual.island).sqrt());
+            largest = f64::max(largest, f.abs());
+        }
+        Ok(LoadOfWhole { size: weighted_norm(&own, |_| 1.0), largest })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::nodes::DenseNode;
 use super::*;
+use crate::body::{grounded, Local};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Csr, Matrix, Symmetric};
 
@@ -193,7 +194,7 @@ impl DenseModel {
         let (tangential, nodes) = (Self::rows(&self.tangential(), n), self.laws());
         let mut bodies = Vec::new();
         for (p, part) in self.parts.iter().enumerate() {
-            bodies.push(Local {
+            bodies.push(Seen::Here(Local {
                 stiffness: (&matrices[p]).into(),
                 null_space: &spaces[p],
                 soft: false,
@@ -201,11 +202,11 @@ impl DenseModel {
                 grounded: &grounded[p],
                 touched: touched.on(p),
                 dual: None,
-            });
+            }));
         }
         let load = |part: &DenseBody| Load { own: Some(part.load.clone().into()), ..Load::default() };
         let data = Data {
-            bodies: Locals::new(bodies, &[], 1),
+            bodies: Locals::new(bodies, 1),
             loads: Kept::of(self.parts.iter().map(load).collect()),
             touched: &touched,
             contact: &contact,

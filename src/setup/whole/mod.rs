@@ -6,8 +6,8 @@ mod null_space;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::body::{GeneralizedInverse, Kept, Local, Locals};
-use crate::certificate::{certify, grounded, Candidate, Data, Judgement, Load, LoadOf, LoadOfWhole};
+use crate::body::{grounded, GeneralizedInverse, Kept, Local, Locals, Seen};
+use crate::certificate::{certify, Candidate, Data, Judgement, Load, LoadOf, LoadOfWhole};
 use crate::constraints::{RowKind, RowSet, Touched};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::power_of_two_below;
@@ -47,16 +47,16 @@ enum Basis {
 }
 
 impl Basis {
-    fn vectors(&self) -> &Matrix {
+    fn vectors(&self) -> Result<&Matrix> {
         match self {
-            Self::Known(kplus) => &kplus.null_space,
-            Self::Found(vectors) => vectors,
+            Self::Known(kplus) => kplus.null_space(),
+            Self::Found(vectors) => Ok(vectors),
         }
     }
 }
 
 /// K+ and grounded unknowns of a part.
-pub type OfPart<'a> = dyn Fn(usize) -> Option<(&'a Arc<GeneralizedInverse>, &'a Arc<[u32]>)> + Sync + 'a;
+pub type OfPart<'a> = dyn Fn(usize) -> Result<(&'a Arc<GeneralizedInverse>, Arc<[u32]>)> + Sync + 'a;
 
 impl Whole {
     /// None for an island without pieces.
@@ -119,7 +119,9 @@ impl Whole {
         let equalities = Arc::new(equalities);
         let (bodies, ranges) = (bodies.into(), Arc::new(ranges));
         let island = Island { bodies, ranges, touched, contact, equalities, friction, unit };
-        let bodies = threads::run(model.threads(), island.bodies.len(), |k| {
+        let is_away = |part: usize| of_part(part).is_ok_and(|(kplus, _)| kplus.on_caller());
+        let on_caller = |k: usize| parts.of(island.bodies[k]).any(is_away);
+        let bodies = threads::run_apart(model.threads(), island.bodies.len(), on_caller, |k| {
             let (body, part) = (island.bodies[k], part_of[k]);
             let made = whole_body(model, parts, (body, part), of_part);
             made.map_err(|e| e.body(part.unwrap_or(parts.first[body])))
@@ -167,19 +169,19 @@ impl Whole {
             };
             let stiffness = stiffness.ok_or_else(missing)?;
             let largest = stiffness.largest_diagonal();
-            bodies.push(Local {
+            bodies.push(Seen::Here(Local {
                 stiffness,
-                null_space: own.null_space.vectors(),
+                null_space: own.null_space.vectors()?,
                 soft: own.soft,
                 unit: if largest > 0.0 { power_of_two_below(largest) } else { self.island.unit },
                 grounded: &own.grounded,
                 touched: self.island.touched.on(k),
                 dual: None,
-            });
+            }));
         }
         let load = |own: Vec<f64>| Load { own: Some(own.into()), whole: LoadOfWhole::default() };
         Ok(Data {
-            bodies: Locals::new(bodies, &[], model.threads()),
+            bodies: Locals::new(bodies, model.threads()),
             loads: Kept::of(loads.into_iter().map(load).collect()),
             touched: &self.island.touched,
             contact: &self.island.contact.rows,
@@ -195,7 +197,7 @@ impl Whole {
     /// The null space of a body of the host, n x r.
     pub fn null_space(&self, body: usize) -> Option<&Matrix> {
         let at = self.island.bodies.binary_search(&body).ok()?;
-        Some(self.bodies[at].null_space.vectors())
+        self.bodies[at].null_space.vectors().ok()
     }
 
     /// `alpha = R'D u / unit` of a body of the host, r: u is `R alpha` plus a motion normal to R.
@@ -232,21 +234,20 @@ fn whole_body(
     let missing = || Error::new(Kind::State, "a body has not been set up");
     let Some(k) = &parts.assembled[body] else {
         let part = part.ok_or_else(missing)?;
-        let (kplus, grounded) = of_part(part).ok_or_else(missing)?;
-        let (soft, grounded) = (kplus.is_soft(), Arc::clone(grounded));
-        return Ok(WholeBody {
-            null_space: Basis::Known(Arc::clone(kplus)),
-            grounded,
-            soft,
-            part: Some(part),
-        });
+        let (kplus, grounded) = of_part(part)?;
+        let soft = kplus.is_soft();
+        let null_space = match kplus.elsewhere() {
+            None => Basis::Known(Arc::clone(kplus)),
+            Some(_) => Basis::Found(kplus.bring_null_space()?.into_owned()),
+        };
+        return Ok(WholeBody { null_space, grounded, soft, part: Some(part) });
     };
     let mut soft = false;
     let mut bases = reserved(parts.of(body).len(), WHAT)?;
     for part in parts.of(body) {
-        let (kplus, _) = of_part(part).ok_or_else(missing)?;
+        let (kplus, _) = of_part(part)?;
         soft |= kplus.is_soft();
-        bases.push(kplus.free_motions());
+        bases.push(kplus.free_motions()?);
     }
     let vectors = null_space(model, parts, body, &bases)?;
     let grounded = grounded(crate::body::Stiffness::Assembled(k))?.into();

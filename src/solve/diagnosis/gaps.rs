@@ -3,7 +3,8 @@
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
 
-use crate::certificate::{led, NOISE};
+use crate::body::Seen;
+use crate::certificate::{led, Couple, Trace, NOISE};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::twofold::Twofold;
@@ -160,9 +161,11 @@ impl<'a> Contradictions<'a> {
             return Ok(metric);
         }
         let (bodies, island) = (self.case.locals()?, self.case.island());
-        let bodies: Vec<_> = bodies.iter().map(|body| (body.stiffness, body.unit)).collect();
+        let of = |body: &Seen<'a>| (body.diagonal(), body.stiffest(), body.unit());
+        let coupled = || bodies.ask(|_| Couple, ());
+        let trace = Trace::new(bodies.iter().map(of), &coupled);
         let rows = RowKind::ALL.map(|kind| &island.members(kind).rows);
-        let metric = led(&bodies, &island.touched, rows, &|_, _| true, island.unit)?;
+        let metric = led(&trace, rows, &|_, _| true, island.unit)?;
         Ok(self.metric.get_or_init(|| metric))
     }
 

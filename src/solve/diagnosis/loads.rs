@@ -168,7 +168,7 @@ impl Unheld {
                 island.scatter(case.model, bodies.bring(&own)?, &mut v);
                 let moved: Vec<bool> = answers.iter().map(|body| body.moved).collect();
                 let why = self.why(case, (&moved, &at), work.value());
-                return Ok(Some(self.named(case, v, &why)));
+                return Ok(Some(self.named(case, v, answers[self.body].is_stiff, &why)));
             }
         }
         Ok(None)
@@ -203,14 +203,13 @@ impl Unheld {
         }
     }
 
-    fn named(&self, case: Case, mut v: Vec<f64>, why: &str) -> Error {
+    /// `stiff`: K resists the unknown of the body that moves fastest.
+    fn named(&self, case: Case, mut v: Vec<f64>, stiff: bool, why: &str) -> Error {
         let body = case.island().bodies[self.body];
         let range = case.model.range(body);
         let fastest =
             range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
         let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
-        let k = case.model.bodies[body].body.k();
-        let stiff = k.is_none_or(|k| k.metric(fastest - range.start, 0.0) > 0.0);
         let what = format!(
             "the load moves the body and no contact force can hold it (|resultant| / |load| = {:.1e} of the bodies that move \
              together); the motion is fastest at this dof, in the {sense} direction{why}{}",

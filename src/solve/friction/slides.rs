@@ -6,7 +6,7 @@ use crate::solve::case::Case;
 
 /// The error with the body that slides fastest, its motion, and the part that friction holds.
 pub fn named(case: Case, slide: &Slide, starts: usize) -> Result<Error> {
-    let own = case.ready.rigid_motion(&slide.alpha)?;
+    let own = case.rigid_motion(&slide.alpha)?;
     let (v, body, dof) = case.fastest(own)?;
     let sense = if v[case.model.offsets[body] + dof] > 0.0 { "positive" } else { "negative" };
     let what = format!(

@@ -209,7 +209,7 @@ impl Question for Deformation {
 
     fn answer(&self, body: &Local, deformed: &mut Vec<f64>, point: &Point) -> Result<Vec<f64>> {
         *deformed = point.v.values();
-        axpy(-1.0, &turn(body.dual()?, &self.beta)?, deformed);
+        axpy(-1.0, &turn(body, &self.beta)?, deformed);
         Ok(body.at_rows(deformed))
     }
 }
@@ -217,7 +217,7 @@ impl Question for Deformation {
 impl Point {
     /// Whether R a is apart, and R a.
     fn shift(&mut self, body: &Local, a: &[f64], apart: f64) -> Result<(bool, Vec<f64>)> {
-        let motion = turn(body.dual()?, a)?;
+        let motion = turn(body, a)?;
         let apart =
             length(body, &motion)? > apart * length(body, &self.v.values())? && is_unresisted(body, &motion)?;
         let to = if apart { &mut self.w } else { &mut self.v };

@@ -99,7 +99,7 @@ impl Question for Turn {
     type Given = (Vec<f64>,);
 
     fn answer(&self, body: &Local, turned: &mut Vec<f64>, v: &Vec<f64>) -> Result<Vec<f64>> {
-        *turned = turn(body.dual()?, &self.a)?;
+        *turned = turn(body, &self.a)?;
         axpy(1.0, v, turned);
         Ok(body.at_rows(turned))
     }
@@ -119,7 +119,7 @@ impl Question for Slide {
 
     fn answer(&self, body: &Local, v: &mut Vec<f64>, _: ()) -> Result<Vec<f64>> {
         *v = displaced(body, zeros(body.order(), WHAT)?, &self.at_rows)?;
-        axpy(1.0, &turn(body.dual()?, &self.a)?, v);
+        axpy(1.0, &turn(body, &self.a)?, v);
         Ok(body.at_rows(v))
     }
 }
@@ -129,18 +129,19 @@ pub(super) fn of_load(body: &Local, f: &[f64]) -> Result<OfLoad> {
     let mut u = zeros(f.len(), WHAT)?;
     kplus.apply(f, &mut u)?;
     let moved = (0..rows.rows()).map(|k| by * rows.row_dot(k, &u)).collect();
-    Ok(OfLoad { moved, resultants: resultants(body.dual()?, f) })
+    Ok(OfLoad { moved, resultants: resultants(body, f)? })
 }
 
 /// The right-hand side of `G lambda = e` in (12), `e = R'f`, in the scaling of the dual; 0 if it is rounding.
-pub(super) fn resultants(LocalDual { kplus, size, .. }: &LocalDual, f: &[f64]) -> Vec<f64> {
+pub(super) fn resultants(body: &Local, f: &[f64]) -> Result<Vec<f64>> {
+    let LocalDual { kplus, size, .. } = body.dual()?;
     let resultant = |k: usize| {
-        let motion = kplus.null_space.col(k);
+        let motion = body.null_space.col(k);
         let terms = norm_max(motion) * f.iter().map(|f| f.abs()).sum::<f64>();
         let resultant = Some(dot(motion, f)).filter(|e| e.abs() > kplus.rounding * terms);
         resultant.unwrap_or(0.0) / size
     };
-    (0..kplus.null_space.cols).map(resultant).collect()
+    Ok((0..body.null_space.cols).map(resultant).collect())
 }
 
 /// `K+ f` for a load with these values where rows touch the body: (17) without its rigid motion; (16) if the body is held, K+ = K^-1.
@@ -154,8 +155,8 @@ pub(super) fn displaced(body: &Local, mut load: Vec<f64>, at_rows: &[f64]) -> Re
 }
 
 /// `R a`, the rigid motion of (17).
-pub(super) fn turn(dual: &LocalDual, a: &[f64]) -> Result<Vec<f64>> {
-    let mut turned = zeros(dual.metric.len(), WHAT)?;
-    dual.kplus.null_space.mul_add(1.0 / dual.size, a, &mut turned);
+pub(super) fn turn(body: &Local, a: &[f64]) -> Result<Vec<f64>> {
+    let mut turned = zeros(body.order(), WHAT)?;
+    body.null_space.mul_add(1.0 / body.dual()?.size, a, &mut turned);
     Ok(turned)
 }

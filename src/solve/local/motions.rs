@@ -12,12 +12,39 @@ const WHAT: &str = "a motion";
 
 wire_unit!(Rigid, Split, Energy, Negate);
 wire_struct!(Parted { at_rows, slides });
+wire_struct!(Rebased { vectors });
 wire_struct!(Along { a });
 wire_struct!(Moved { v, size, loose });
 wire_struct!(FreeMotions { rounding });
 wire_struct!(FreeMotionsAtRows { at_rows, fastest, gram });
 wire_struct!(Place { a });
 wire_struct!(EnergyOfMotion { stored, terms, entries, length, fastest });
+
+/// Asks for T with `R_host = R T` for the null space that the host has given, r x r; the identity without.
+pub struct Rebased {
+    /// n x r, no unit.
+    pub vectors: Option<Matrix>,
+}
+
+impl Question for Rebased {
+    const NAME: Name = Name::Rebased;
+    type Answer = Matrix;
+    type Kept = ();
+    type Given = ();
+
+    /// `R'D R_host`, as R'DR = I.
+    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<Matrix> {
+        let r = body.null_space.cols;
+        let mut t = Matrix::zeros(r, r)?;
+        (0..r).for_each(|j| t.set(j, j, 1.0));
+        if let Some(vectors) = &self.vectors {
+            for k in 0..r.min(vectors.cols) {
+                t.col_mut(k).copy_from_slice(&rigid_part(body, vectors.col(k))?);
+            }
+        }
+        Ok(t)
+    }
+}
 
 /// Asks for `R'D u` over the modes of the dual.
 pub struct Rigid;
@@ -67,7 +94,7 @@ impl Question for Split {
     }
 }
 
-/// Asks for a motion `v = R a` of the modes of the dual; nothing if there are no amplitudes.
+/// Keeps a motion `v = R a` of the modes of the dual, and asks for it; nothing if there are no amplitudes.
 pub struct Along {
     pub a: Option<Vec<f64>>,
 }
@@ -84,20 +111,20 @@ pub struct Moved {
 impl Question for Along {
     const NAME: Name = Name::Along;
     type Answer = Option<Moved>;
-    type Kept = ();
+    type Kept = Vec<f64>;
     type Given = ();
 
-    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<Option<Moved>> {
+    fn answer(&self, body: &Local, v: &mut Vec<f64>, _: ()) -> Result<Option<Moved>> {
         let Some(a) = &self.a else { return Ok(None) };
         let dual = body.dual()?;
-        let mut v = zeros(body.order(), WHAT)?;
-        body.null_space.mul_add(1.0 / dual.size, a, &mut v);
-        let (_, terms) = body.products(&v, WHAT)?;
+        *v = zeros(body.order(), WHAT)?;
+        body.null_space.mul_add(1.0 / dual.size, a, v);
+        let (_, terms) = body.products(v, WHAT)?;
         let stiff = |j: usize| body.stiffness.metric(j, 0.0) > 0.0;
-        let loose = weighted_norm(&v, |j| if stiff(j) { 0.0 } else { dual.metric[j] });
+        let loose = weighted_norm(v, |j| if stiff(j) { 0.0 } else { dual.metric[j] });
         let size =
             body.touched.iter().map(|dof| terms[*dof as usize] / (dual.metric[*dof as usize] * dual.island));
-        Ok(Some(Moved { v: body.at_rows(&v), size: size.collect(), loose }))
+        Ok(Some(Moved { v: body.at_rows(v), size: size.collect(), loose }))
     }
 }
 

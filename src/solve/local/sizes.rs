@@ -16,7 +16,7 @@ wire_struct!(SizesOfForces { load, push, of_load, of_push, free, resultants });
 wire_struct!(Left { rest, resultants });
 wire_struct!(SizesLeft { left, resultants, load, told });
 wire_struct!(Proof { moves });
-wire_struct!(ProofOfBody { at_rows, moved, work, strain });
+wire_struct!(ProofOfBody { at_rows, moved, work, strain, is_stiff });
 
 /// Asks for the sizes of the load and of forces of rows, `push` where they touch, force.
 pub struct Sizes {
@@ -59,7 +59,7 @@ impl Question for Sizes {
             of_load: references[0],
             of_push: references[1],
             free,
-            resultants: resultants(dual, &load),
+            resultants: resultants(body, &load)?,
         })
     }
 }
@@ -145,6 +145,8 @@ pub struct ProofOfBody {
     pub work: Twofold,
     /// `|K v|_{D^-1}`, force / length x length.
     pub strain: f64,
+    /// K resists the unknown that moves fastest.
+    pub is_stiff: bool,
 }
 
 impl Question for Proof {
@@ -165,7 +167,9 @@ impl Question for Proof {
         body.stiffness.mul(v, &mut strained)?;
         let metric = body.dual()?.metric;
         let strain = weighted_norm(&strained, |j| 1.0 / metric[j]);
-        Ok(ProofOfBody { at_rows: body.at_rows(v), moved: v.iter().any(|v| *v != 0.0), work, strain })
+        let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+        let (moved, is_stiff) = (v.iter().any(|v| *v != 0.0), body.stiffness.metric(fastest, 0.0) > 0.0);
+        Ok(ProofOfBody { at_rows: body.at_rows(v), moved, work, strain, is_stiff })
     }
 }
 
@@ -200,7 +204,7 @@ impl Question for Work {
 fn load_of(body: &Local, resultants: &[f64]) -> Result<Vec<f64>> {
     let dual = body.dual()?;
     let mut load = zeros(body.order(), WHAT)?;
-    dual.kplus.null_space.mul_add(dual.size, resultants, &mut load);
+    body.null_space.mul_add(dual.size, resultants, &mut load);
     load.iter_mut().zip(dual.metric).for_each(|(f, d)| *f *= d * dual.by);
     Ok(load)
 }

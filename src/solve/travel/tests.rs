@@ -1,5 +1,5 @@
 use super::*;
-use crate::body::{GeneralizedInverse, Local, LocalDual, Modes, NullSpaceInput};
+use crate::body::{GeneralizedInverse, Local, LocalDual, Modes, NullSpaceInput, Seen};
 use crate::linalg::Symmetric;
 use crate::qp::AnswerFace;
 
@@ -22,9 +22,9 @@ fn with_bodies<T>(of: &[OfBody], work: impl FnOnce(&Locals, &Touched) -> T) -> T
         let (null_space, metric, grounded) = of[p];
         let dual = LocalDual { kplus: &kplus[p], rows: &rows, metric, island: 1.0, by: 1.0, size: 1.0 };
         let (stiffness, touched, dual) = ((&matrices[p]).into(), touched.on(p), Some(dual));
-        Local { stiffness, null_space, soft: false, unit: 1.0, grounded, touched, dual }
+        Seen::Here(Local { stiffness, null_space, soft: false, unit: 1.0, grounded, touched, dual })
     };
-    work(&Locals::new((0..of.len()).map(body).collect(), &[], 1), &touched)
+    work(&Locals::new((0..of.len()).map(body).collect(), 1), &touched)
 }
 
 fn kept(v: &[f64], unknowns: usize) -> Kept {

@@ -167,8 +167,7 @@ fn lent_bodies_have_the_bits_and_the_work_of_those_that_stay() {
         [&mut lent, &mut alone].into_iter().for_each(rub);
         assert_eq!(solved(&mut lent), solved(&mut alone), "with friction");
         assert_eq!(lent.work(), alone.work());
-        let names =
-            [Name::Factorise, Name::Assemble, Name::Multiply, Name::Entries, Name::Join, Name::Displace];
+        let names = [Name::Factorise, Name::Multiply, Name::Entries, Name::Join, Name::Displace];
         assert!(names.into_iter().all(|name| served.asked(name) > 1));
         assert_eq!((served.asked(Name::Fit), served.asked(Name::Solve)), (served.asked(Name::Measure), 0));
         drop(lent);
@@ -181,7 +180,7 @@ fn what_is_computed_once_is_neither_sent_nor_made_again() {
     let served = served(|_, _| None);
     let mut problem = chains(&[4.0, 3.0, 2.0, 1.0], served.lending());
     solved(&mut problem).unwrap();
-    let made = || [Name::Factorise, Name::Assemble, Name::Join].map(|name| served.asked(name));
+    let made = || [Name::Factorise, Name::Join].map(|name| served.asked(name));
     let (first, bytes) = (made(), problem.traffic().bytes);
     problem.set_load(1, &[0.0, 0.0, -2.0, 0.0, 0.0]).unwrap();
     solved(&mut problem).unwrap();

@@ -1,8 +1,8 @@
 //! Unknowns that are held so stiffly that their neighbours do not matter, such as those of penalty supports.
 
-use crate::body::Stiffness;
+use crate::body::given::Stiffness;
 use crate::error::Result;
-use crate::numbers::certificate::GROUNDED;
+use crate::numbers::body::GROUNDED;
 use crate::platform::memory::zeros;
 
 /// The unknowns with `K_jj > 1000 T_j`, force / length, with the stiffness contribution of the neighbours `T_j = sum_{i
@@ -21,24 +21,11 @@ pub fn grounded(k: Stiffness) -> Result<Vec<u32>> {
             neighbours[i] += through(k_ij, k.metric(j, 0.0));
         }
     };
-    if !each_entry(k, couple) {
+    if !k.each_entry(couple) {
         return Ok(Vec::new());
     }
     let is_grounded = |j: &usize| diagonal(*j) > GROUNDED * neighbours[*j];
     Ok((0..order).filter(is_grounded).map(|j| j as u32).collect())
-}
-
-/// Visits row, column and value of every entry of the lower triangle; false if the host keeps them. Contributions of two
-/// pieces to one entry are two entries.
-pub(super) fn each_entry(k: Stiffness, mut visit: impl FnMut(usize, usize, f64)) -> bool {
-    match k {
-        Stiffness::Matrix(k) => {
-            (0..k.order()).for_each(|i| k.lower_row(i).for_each(|(j, v)| visit(i, j, v)));
-        }
-        Stiffness::Assembled(k) => k.each_entry(visit),
-        Stiffness::Host(_) => return false,
-    }
-    true
 }
 
 /// `k_ij^2 / k_ii`, force / length; `k_ij^2` alone might overflow.

@@ -1,0 +1,203 @@
+//! All bodies of an island: questions about them, at once and wherever they are.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use crate::body::elsewhere::{ask, Asking, Away};
+use crate::body::given::Stiffness;
+use crate::body::local::brought::{Bring, Put, Section};
+use crate::body::local::kept::{Given, Kept, OfBody};
+use crate::body::local::seen::Seen;
+use crate::body::local::{Heading, Local, Question};
+use crate::error::Result;
+use crate::linalg::Symmetric;
+use crate::platform::threads;
+use crate::ranks::Token;
+
+/// The bodies of an island.
+#[derive(Clone)]
+pub struct Locals<'a> {
+    bodies: Vec<Seen<'a>>,
+    /// Some body is on another rank.
+    some_away: bool,
+    threads: usize,
+}
+
+/// K, n x n, force / length, and `D~ / 2^p`, n.
+pub type OfSection<'a> = (Cow<'a, Symmetric>, Cow<'a, [f64]>);
+
+/// Entries of K, below which a question about all bodies costs less than waking other threads.
+const PARALLEL_PAYS: usize = 1 << 18;
+
+impl<'a> Locals<'a> {
+    pub fn new(bodies: Vec<Seen<'a>>, threads: usize) -> Self {
+        // few bodies share their own work among the threads
+        let pays =
+            bodies.len() >= threads && bodies.iter().map(Seen::entries).sum::<usize>() >= PARALLEL_PAYS;
+        let some_away = bodies.iter().any(|body| body.away().is_some());
+        Self { bodies, some_away, threads: if pays { threads } else { 1 } }
+    }
+
+    pub fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Seen<'a>> + '_ {
+        self.bodies.iter()
+    }
+
+    pub fn body(&self, p: usize) -> &Seen<'a> {
+        &self.bodies[p]
+    }
+
+    /// Asks about every body; the answers in their order, or the first error.
+    pub fn ask<Q: Question<Kept = ()>>(
+        &self,
+        question: impl Fn(usize) -> Q,
+        given: <Q::Given as Given>::All<'_>,
+    ) -> Result<Vec<Q::Answer>> {
+        let heading = |p: usize, body| {
+            let given = Q::Given::names(given, p)?;
+            Ok(Heading { body, kept: None, from: None, given })
+        };
+        let own = |p: usize, q: &Q| q.answer(self.bodies[p].here()?, &mut (), Q::Given::of(given, p)?);
+        self.each(question, heading, own, |_, answer| answer)
+    }
+
+    /// Asks about every body what makes something that is kept.
+    pub fn make<Q: Question>(
+        &self,
+        question: impl Fn(usize) -> Q,
+        given: <Q::Given as Given>::All<'_>,
+    ) -> Result<(Vec<Q::Answer>, Kept<Q::Kept>)> {
+        let named = |away: &Away| Arc::new(away.name.ranks.token(away.name.rank));
+        let tokens: Vec<Option<Arc<Token>>> = match self.some_away {
+            true => self.bodies.iter().map(|body| body.away().map(named)).collect(),
+            false => Vec::new(),
+        };
+        let token = |p: usize| tokens.get(p).and_then(Option::as_ref);
+        let heading = |p: usize, body| {
+            let given = Q::Given::names(given, p)?;
+            Ok(Heading { body, kept: token(p).map(|token| token.number), from: None, given })
+        };
+        let own = |p: usize, q: &Q| {
+            let mut kept = Q::Kept::default();
+            let answer = q.answer(self.bodies[p].here()?, &mut kept, Q::Given::of(given, p)?)?;
+            Ok((answer, Some(kept)))
+        };
+        let made = self.each(question, heading, own, |_, answer| (answer, None))?;
+        let (answers, kept): (_, Vec<_>) = made.into_iter().unzip();
+        let kept = kept.into_iter().enumerate().map(|(p, own)| match (own, token(p)) {
+            (None, Some(token)) => OfBody::Elsewhere(Arc::clone(token)),
+            (own, _) => OfBody::Here(own.unwrap_or_default()),
+        });
+        Ok((answers, Kept::wherever(kept.collect())))
+    }
+
+    /// Asks about every body what changes what is kept.
+    pub fn change<Q: Question>(
+        &self,
+        question: impl Fn(usize) -> Q,
+        kept: &mut Kept<Q::Kept>,
+        given: <Q::Given as Given>::All<'_>,
+    ) -> Result<Vec<Q::Answer>> {
+        let mut names = vec![(None, None); if self.some_away { self.bodies.len() } else { 0 }];
+        for (p, (name, from)) in names.iter_mut().enumerate() {
+            let Some(Away { name: of, .. }) = self.bodies[p].away() else { continue };
+            // what others name, too, stays as it is
+            let token = kept.token(p)?;
+            if Arc::strong_count(token) > 1 {
+                *from = Some(token.number);
+                kept.name_anew(p, Arc::new(of.ranks.token(of.rank)));
+            }
+            *name = Some(kept.token(p)?.number);
+        }
+        let heading = |p: usize, body| {
+            let given = Q::Given::names(given, p)?;
+            let (kept, from) = names[p];
+            Ok(Heading { body, kept, from, given })
+        };
+        let cells = kept.cells();
+        let own = |p: usize, q: &Q| {
+            let given = Q::Given::of(given, p)?;
+            cells[p].change(|kept| q.answer(self.bodies[p].here()?, kept, given))
+        };
+        self.each(question, heading, own, |_, answer| answer)
+    }
+
+    /// The bodies that are elsewhere are asked about first, by one request to each rank, and answered last.
+    fn each<Q: Question, T: Send>(
+        &self,
+        question: impl Fn(usize) -> Q,
+        heading: impl Fn(usize, u64) -> Result<Heading>,
+        own: impl Fn(usize, &Q) -> Result<T> + Sync,
+        of_answer: impl Fn(usize, Q::Answer) -> T,
+    ) -> Result<Vec<T>> {
+        let Some(Away { name: first, .. }) =
+            self.bodies.iter().find_map(Seen::away).filter(|_| self.some_away)
+        else {
+            return self.here(question, own);
+        };
+        let mut asked = Vec::new();
+        for (p, body) in self.bodies.iter().enumerate() {
+            let Some(Away { name: token, .. }) = body.away() else { continue };
+            let heading = heading(p, token.number)?;
+            asked.push((p, Asking::new(token.rank, Q::NAME, &heading).and(&question(p))));
+        }
+        let owed = ask(&first.ranks, asked)?;
+        let question = |p: usize| self.bodies[p].away().is_none().then(|| question(p));
+        let mut all = self.here(question, |p, q| Ok(q.as_ref().map(|q| own(p, q))))?;
+        for (p, answer) in owed.answers::<Q::Answer>()? {
+            all[p] = Some(answer.map(|answer| of_answer(p, answer)));
+        }
+        all.into_iter().map(|of| of.ok_or_else(crate::ranks::damaged)?).collect()
+    }
+
+    fn here<Q: Send + Sync, T: Send>(
+        &self,
+        question: impl Fn(usize) -> Q,
+        own: impl Fn(usize, &Q) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        if self.threads == 1 {
+            return (0..self.bodies.len()).map(|p| own(p, &question(p))).collect();
+        }
+        let questions: Vec<Q> = (0..self.bodies.len()).map(question).collect();
+        let on_caller = |p: usize| self.bodies[p].here().is_ok_and(Local::on_caller);
+        threads::run_apart(self.threads, questions.len(), on_caller, |p| own(p, &questions[p]))
+    }
+
+    /// The values of vectors of all bodies where rows touch them, body after body.
+    pub fn at_rows(&self, v: &[Vec<f64>]) -> Vec<f64> {
+        self.bodies.iter().zip(v).flat_map(|(body, v)| body.at_rows(v)).collect()
+    }
+
+    /// Keeps these vectors with their bodies.
+    pub fn put(&self, v: Vec<Vec<f64>>) -> Result<Kept> {
+        if !self.some_away {
+            return Ok(Kept::of(v));
+        }
+        Ok(self.make(|p| Put { v: v[p].clone() }, ())?.1)
+    }
+
+    /// The vectors of all bodies.
+    pub fn bring<'v>(&self, v: &'v Kept) -> Result<Vec<Cow<'v, [f64]>>> {
+        if !self.some_away {
+            return Ok(v.each()?.into_iter().map(|own| Cow::Borrowed(&own[..])).collect());
+        }
+        Ok(self.ask(|_| Bring, v)?.into_iter().map(Cow::Owned).collect())
+    }
+
+    /// K and metric of all bodies in one place; none if the entries of some K are not known.
+    pub fn sections(&self) -> Result<Option<Vec<OfSection<'a>>>> {
+        let own = |body: &Seen<'a>| {
+            let local = body.here()?;
+            let Stiffness::Matrix(k) = local.stiffness else { return Ok(None) };
+            Ok(Some((Cow::Borrowed(k), Cow::Borrowed(local.dual()?.metric))))
+        };
+        if !self.some_away {
+            return self.bodies.iter().map(own).collect();
+        }
+        let brought = self.ask(|_| Section, ())?.into_iter();
+        Ok(brought.map(|of| of.map(|(k, metric)| (Cow::Owned(k), Cow::Owned(metric)))).collect())
+    }
+}
