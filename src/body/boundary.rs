@@ -6,9 +6,34 @@ use crate::body::host::HostOperator;
 use crate::error::Result;
 use crate::linalg::cholesky::inverse_form;
 use crate::linalg::{Analysis, Csr, Operator, Packed, Symmetric};
+use crate::ranks::wire_enum;
+
+/// What the dofs inside of a body do while those of its boundary move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Inside {
+    /// They are held: the lumped preconditioner.
+    Held,
+    /// They are free: the Dirichlet preconditioner.
+    Free,
+}
+
+wire_enum!(Inside { Held, Free });
+
+/// `scale` times the stiffness of the dofs of the boundary.
+pub fn boundary(
+    k: &Symmetric,
+    inside: Inside,
+    scale: f64,
+    boundary: &[usize],
+) -> Result<Box<dyn Operator + Send>> {
+    match inside {
+        Inside::Held => lumped(k, scale, boundary),
+        Inside::Free => dirichlet(k, scale, boundary),
+    }
+}
 
 /// `scale K_bb`: the other dofs are held.
-pub fn lumped(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
+fn lumped(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
     let local = positions(k.order(), boundary);
     let mut part = Symmetric::empty();
     for &dof in boundary {
@@ -25,7 +50,7 @@ pub fn diagonal(k: &HostOperator, scale: f64, boundary: &[usize]) -> Result<Box<
 }
 
 /// `S = scale (K_bb - K_bi K_ii^-1 K_ib)`: the other dofs are free.
-pub fn dirichlet(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
+fn dirichlet(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
     let local = positions(k.order(), boundary);
     let held: Vec<bool> = local.iter().map(Option::is_some).collect();
     if !held.contains(&false) {

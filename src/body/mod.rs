@@ -45,11 +45,11 @@ pub(crate) use crate::ranks::{wire_struct, wire_unit};
 pub use alike::{input_key, pattern_key, same_body, same_matrix, same_pattern, same_vectors, value_key};
 pub use assembled::Assembled;
 pub use borrowed::{from_borrowed, Columns};
-pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};
+pub use boundary::{boundary, diagonal, dirichlet_bytes, Inside};
 pub use coarse::Coarse;
 pub use digits::Digits;
 pub use elsewhere::{
-    Asking, Away, Elsewhere, FormElsewhere, InIsland, Joined, Joining, Name, Owed, ABOUT_BODIES,
+    ask, Asking, Away, Elsewhere, FormElsewhere, InIsland, Joined, Joining, Name, Owed, ABOUT_BODIES,
 };
 pub use generalized_inverse::{Factorised, GeneralizedInverse};
 pub use given::Stiffness;

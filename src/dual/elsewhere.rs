@@ -46,7 +46,7 @@ pub(super) struct Each<'a> {
     /// The question about a body elsewhere.
     pub asking: &'a dyn Fn(usize) -> Option<Asking>,
     /// The result for it from the answer.
-    pub of_answer: &'a dyn Fn(usize, Vec<f64>) -> Vec<f64>,
+    pub of_answer: &'a dyn Fn(usize, Vec<f64>) -> Result<Vec<f64>>,
 }
 
 impl Dual {
@@ -64,7 +64,7 @@ impl Dual {
         };
         let mut results = in_parallel(self.subdomains.len(), &here)?;
         for (p, answer) in owed.answers()? {
-            results[p] = (each.of_answer)(p, answer?);
+            results[p] = (each.of_answer)(p, answer?)?;
         }
         Ok(results)
     }

@@ -23,7 +23,7 @@ pub use cost::{all_bytes, implicit_bodies, DistinctRows, Size};
 pub use coupling::dependent_rows;
 pub use elsewhere::Form;
 pub use operator::Accuracy;
-pub use preconditioner::{constrained, Boundary, Preconditioner};
+pub use preconditioner::{constrained, Boundary, BoundaryStiffness, Preconditioner};
 pub use reuse::{ColumnCounts, Kept};
 pub use turned::{TurnedFace, TurnedRow};
 

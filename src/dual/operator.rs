@@ -5,7 +5,7 @@
 use crate::body::Asking;
 use crate::dual::elsewhere::{Each, Form};
 use crate::dual::{Dual, InParallel, Subdomain};
-use crate::error::Result;
+use crate::error::{Error, Kind, Result};
 use crate::linalg::{Csr, Entries, Matrix, Operator};
 use crate::platform::memory::zeros;
 use crate::platform::tally;
@@ -44,6 +44,14 @@ impl Subdomain {
         let Some(Form::Elsewhere(form)) = &self.operator else { return None };
         let local = if form.explicit { self.multiples.gather(&self.rows, x) } else { self.gather(x) };
         Some(form.multiplying(by == Accuracy::Full, local))
+    }
+
+    /// The product from the answer.
+    fn image_elsewhere(&self, answer: Vec<f64>) -> Result<Vec<f64>> {
+        match &self.operator {
+            Some(Form::Elsewhere(form)) => Ok(self.image_of(form.image(answer)?)),
+            _ => Err(Error::new(Kind::Internal, "a body here was asked for elsewhere")),
+        }
     }
 
     /// The entries of x of its rows.
@@ -95,7 +103,7 @@ impl Dual {
         let each = Each {
             own: &|p| self.subdomains[p].product(x, by),
             asking: &|p| self.subdomains[p].asking(x, by),
-            of_answer: &|p, answer| self.subdomains[p].image_of(answer),
+            of_answer: &|p, answer| self.subdomains[p].image_elsewhere(answer),
         };
         self.each(&each, in_parallel)
     }

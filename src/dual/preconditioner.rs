@@ -4,6 +4,7 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use crate::body::{ask, FormElsewhere, Owed};
 use crate::constraints::Touched;
 use crate::dual::coupling::{Coupling, FaceCoupling};
 use crate::error::Result;
@@ -16,7 +17,13 @@ use crate::platform::{interrupt, tally};
 pub struct Boundary {
     /// Numbers among all unknowns that rows touch, ascending.
     pub dofs: Vec<usize>,
-    pub stiffness: Box<dyn Operator + Send>,
+    pub stiffness: BoundaryStiffness,
+}
+
+/// S_b, here or on another rank.
+pub enum BoundaryStiffness {
+    Own(Box<dyn Operator + Send>),
+    Elsewhere(FormElsewhere),
 }
 
 pub struct Preconditioner {
@@ -27,10 +34,26 @@ pub struct Preconditioner {
     /// `D^-1/2` of the constrained unknowns.
     weight: Vec<f64>,
     /// S_b, body after body.
-    stiffness: Vec<Box<dyn Operator + Send>>,
+    stiffness: Vec<BoundaryStiffness>,
     coupling: Coupling,
     /// The last face.
     face: Mutex<Option<FaceCoupling>>,
+}
+
+impl BoundaryStiffness {
+    fn order(&self) -> usize {
+        match self {
+            Self::Own(form) => form.order(),
+            Self::Elsewhere(form) => form.order(),
+        }
+    }
+
+    fn bytes_kept(&self) -> usize {
+        match self {
+            Self::Own(form) => form.bytes_kept(),
+            Self::Elsewhere(_) => 0,
+        }
+    }
 }
 
 impl Preconditioner {
@@ -72,7 +95,7 @@ impl Preconditioner {
         face.solve(z)?;
         let mut moved = vec![0.0; self.weight.len()];
         self.rows.mul_transposed_add(1.0, z, &mut moved);
-        let force = self.stiffened(moved);
+        let force = self.stiffened(moved)?;
         for (i, (z, c)) in z.iter_mut().zip(&self.compliance).enumerate() {
             *z = self.rows.row_dot(i, &force) + c * *z;
         }
@@ -80,24 +103,40 @@ impl Preconditioner {
     }
 
     /// `D^-1/2 S_b D^-1/2 v` over the constrained unknowns.
-    pub(super) fn stiffened(&self, mut moved: Vec<f64>) -> Vec<f64> {
+    pub(super) fn stiffened(&self, mut moved: Vec<f64>) -> Result<Vec<f64>> {
         moved.iter_mut().zip(&self.weight).for_each(|(v, weight)| *v *= weight);
         let mut force = vec![0.0; moved.len()];
         let (mut from, mut to) = (&moved[..], &mut force[..]);
-        let mut bodies = Vec::with_capacity(self.stiffness.len());
+        let (mut bodies, mut elsewhere) = (Vec::with_capacity(self.stiffness.len()), Vec::new());
         for stiffness in &self.stiffness {
             let (own, rest) = from.split_at(stiffness.order());
             let (image, others) = to.split_at_mut(stiffness.order());
-            bodies.push((stiffness, own, image));
+            match stiffness {
+                BoundaryStiffness::Own(stiffness) => bodies.push((stiffness, own, image)),
+                BoundaryStiffness::Elsewhere(form) => elsewhere.push((form, own, image)),
+            }
             (from, to) = (rest, others);
         }
+        let owed = match elsewhere.first() {
+            None => Owed::nothing(),
+            Some((form, ..)) => {
+                let question = |(k, (form, own, _)): (usize, &(&FormElsewhere, &[f64], &mut [f64]))| {
+                    (k, form.multiplying(true, own.to_vec()))
+                };
+                ask(form.ranks(), elsewhere.iter().enumerate().map(question).collect())?
+            }
+        };
         if moved.len() < LONG {
             bodies.into_iter().for_each(|(stiffness, own, image)| stiffness.apply(own, image));
         } else {
             parts_of(bodies, |_, (stiffness, own, image)| stiffness.apply(own, image));
         }
+        for (k, answer) in owed.answers::<Vec<f64>>()? {
+            let (form, _, image) = &mut elsewhere[k];
+            image.copy_from_slice(&form.image(answer?)?);
+        }
         force.iter_mut().zip(&self.weight).for_each(|(v, weight)| *v *= weight);
-        force
+        Ok(force)
     }
 
     /// `B D^-1/2` over the constrained unknowns.
@@ -109,7 +148,7 @@ impl Preconditioner {
         &self.compliance
     }
 
-    /// Bytes of the stiffness S_b of all bodies.
+    /// Bytes of the stiffness S_b of the bodies here.
     pub fn bytes_kept(&self) -> usize {
         self.stiffness.iter().map(|boundary| boundary.bytes_kept()).sum()
     }

@@ -93,7 +93,7 @@ impl TurnedFace<'_> {
         self.solve(z)?;
         let mut moved = zeros(self.rows.cols, "a preconditioner")?;
         self.rows.mul_transposed_add(1.0, z, &mut moved);
-        let force = self.of.stiffened(moved);
+        let force = self.of.stiffened(moved)?;
         for (i, z) in z.iter_mut().enumerate() {
             *z = self.rows.row_dot(i, &force) + self.added[i] * *z;
         }

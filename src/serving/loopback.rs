@@ -34,15 +34,19 @@ fn alone(incoming: &Incoming, bodies: &Bodies) -> Result<Vec<u8>> {
 
 /// As many ranks as variable RANKS says; RANKS_WRONG names a kind of questions that they answer wrongly in the last bit. A line for each is added to file RANKS_LOG: how many questions of each kind it has answered.
 pub fn by_environment() -> Option<Arc<Ranks>> {
-    use std::io::Write;
-
     let size = std::env::var("RANKS").ok()?.parse().ok().filter(|size| *size > 1)?;
     Some(on_threads(size, |bodies| {
-        let Ok(path) = std::env::var("RANKS_LOG") else { return };
-        let opened = std::fs::OpenOptions::new().create(true).append(true).open(path);
         let counts = Name::ALL.iter().zip(bodies.asked()).map(|(name, count)| format!("{name:?} {count}"));
-        let counts: Vec<String> = counts.collect();
-        // one write: lines of several processes do not mix
-        opened.and_then(|mut file| file.write_all(format!("{}\n", counts.join(" ")).as_bytes())).ok();
+        log(&counts.collect::<Vec<_>>().join(" "));
     }))
+}
+
+/// Adds a line to file RANKS_LOG, if there is such a variable.
+pub fn log(line: &str) {
+    use std::io::Write;
+
+    let Ok(path) = std::env::var("RANKS_LOG") else { return };
+    let opened = std::fs::OpenOptions::new().create(true).append(true).open(path);
+    // one write: lines of several processes do not mix
+    opened.and_then(|mut file| file.write_all(format!("{line}\n").as_bytes())).ok();
 }

@@ -12,7 +12,7 @@ pub fn taken(name: Name, from: &mut &[u8]) -> Result<Box<dyn Answering>> {
         ($($name:ident)+) => {
             match name {
                 $(Name::$name => asked::<$name>(from),)+
-                Name::Factorise | Name::Multiply | Name::Entries | Name::Solve | Name::NullSpace | Name::Join => {
+                Name::Factorise | Name::Boundary | Name::Multiply | Name::Entries | Name::Solve | Name::NullSpace | Name::Join => {
                     Err(damaged())
                 }
             }

@@ -133,6 +133,8 @@ impl Prepared {
         for p in (0..ranks.len()).filter(|p| owner(*p) != representatives[*p]) {
             ranks[p] = ranks[owner(p)];
         }
+        let new = (0..ranks.len()).filter(|p| given[*p].is_none());
+        lending.count(new.clone().count(), new.filter(|p| ranks[*p] > 0).count());
         self.bodies.iter_mut().zip(&ranks).for_each(|(own, rank)| own.rank = Some(*rank as u32));
         ranks
     }

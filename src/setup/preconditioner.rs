@@ -2,10 +2,9 @@
 
 use std::time::Instant;
 
-use crate::body::{diagonal, dirichlet, dirichlet_bytes, lumped, Stiffness};
-use crate::dual::{constrained, Boundary, Preconditioner};
+use crate::body::{boundary, diagonal, dirichlet_bytes, Inside, Stiffness};
+use crate::dual::{constrained, Boundary, BoundaryStiffness, Preconditioner};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::{Operator, Symmetric};
 use crate::model::{Preconditioning, SolvedModel};
 use crate::platform::memory::reserved;
 use crate::platform::{tally, threads};
@@ -21,9 +20,6 @@ const LUMPED_PAYS: usize = 300;
 /// This limit if most rows are glue: a step costs about 2000 operations per row in addition to the product, for the
 /// coarse problem and vectors, and half of the steps are saved.
 const LUMPED_PAYS_ON_GLUE: usize = 50;
-
-/// `scale` times the stiffness of the constrained dofs of a body.
-type BoundaryStiffness = fn(&Symmetric, f64, &[usize]) -> Result<Box<dyn Operator + Send>>;
 
 impl Prepared {
     /// The preconditioners for the options, kept until the options change.
@@ -44,20 +40,67 @@ impl Prepared {
         }
         let mut made = reserved(asked.len(), "groups of bodies")?;
         for (ready, &asked) in duals.islands.iter().zip(&asked) {
-            made.push(match asked {
+            let inside = match asked {
                 Preconditioning::Automatic | Preconditioning::None => None,
-                Preconditioning::Lumped => {
-                    Some(Box::new((asked, preconditioner(model, ready, lumped, &watch.stops)?)))
-                }
-                Preconditioning::Dirichlet => {
-                    Some(Box::new((asked, preconditioner(model, ready, dirichlet, &watch.stops)?)))
-                }
-            });
+                Preconditioning::Lumped => Some(Inside::Held),
+                Preconditioning::Dirichlet => Some(Inside::Free),
+            };
+            let of = |inside| Ok(Box::new((asked, self.preconditioner(model, ready, inside, &watch.stops)?)));
+            made.push(inside.map(of).transpose()?);
         }
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
         islands.zip(made).for_each(|(ready, made)| ready.preconditioner = made);
         watch.phases.ended(Phase::Preconditioner, begun);
         watch.setup_done()
+    }
+
+    fn preconditioner(
+        &self,
+        model: &SolvedModel,
+        ready: &Ready,
+        inside: Inside,
+        stops: &Stops,
+    ) -> Result<Preconditioner> {
+        let Island { bodies, touched, unit, .. } = &*ready.island;
+        let constrained = constrained(&ready.rows.matrix, touched, bodies.len());
+        let local = |k: usize| -> Vec<usize> { constrained[k].iter().map(|&j| touched.dof(j)).collect() };
+        let (mut questions, mut elsewhere) = (Vec::new(), Vec::new());
+        for (k, &p) in bodies.iter().enumerate() {
+            let there = self.inverse(model, p).and_then(|inverse| inverse.kplus.elsewhere());
+            elsewhere.push(there.map(|there| {
+                let (asking, form) = there.boundary(inside, 1.0 / unit, local(k));
+                questions.push((p, asking));
+                form
+            }));
+        }
+        let owed = stops.interrupt.during(|| self.ask(questions))?;
+        let own = threads::run(model.threads(), bodies.len(), |k| {
+            if elsewhere[k].is_some() {
+                return Ok(None);
+            }
+            let (p, missing) =
+                (bodies[k], || Error::new(Kind::Internal, "a body without stiffness was set up"));
+            stops.check()?;
+            tally::costly();
+            let made = match model.bodies[p].body.k().ok_or_else(missing)? {
+                Stiffness::Matrix(k_p) => {
+                    stops.interrupt.during(|| boundary(k_p, inside, 1.0 / unit, &local(k)))
+                }
+                Stiffness::Host(k_p) => diagonal(k_p, 1.0 / unit, &local(k)),
+                Stiffness::Assembled(_) => Err(missing()),
+            };
+            made.map(Some).map_err(|e| e.body(p))
+        })?;
+        for (p, answer) in owed.answers::<()>()? {
+            answer.map_err(|e| e.body(p))?;
+        }
+        let forms = own.into_iter().zip(elsewhere).filter_map(|(own, elsewhere)| {
+            own.map(BoundaryStiffness::Own).or(elsewhere.map(BoundaryStiffness::Elsewhere))
+        });
+        let boundary = |(dofs, stiffness)| Boundary { dofs, stiffness };
+        let boundaries = constrained.into_iter().zip(forms).map(boundary).collect();
+        let (rows, compliance) = (&ready.rows.matrix, &ready.dual.compliance);
+        Preconditioner::new(rows, compliance[..rows.rows()].to_vec(), &ready.rows.metric, boundaries)
     }
 }
 
@@ -76,30 +119,4 @@ fn lumped_pays(ready: &Ready) -> bool {
     let glued = rows > 2 * ready.rows.contact;
     let least = if glued { LUMPED_PAYS_ON_GLUE } else { LUMPED_PAYS };
     ready.dual.product_work() > least * rows
-}
-
-fn preconditioner(
-    model: &SolvedModel,
-    ready: &Ready,
-    stiffness: BoundaryStiffness,
-    stops: &Stops,
-) -> Result<Preconditioner> {
-    let Island { bodies, touched, unit, .. } = &*ready.island;
-    let constrained = constrained(&ready.rows.matrix, touched, bodies.len());
-    let boundaries = threads::run(model.threads(), bodies.len(), |k| {
-        let (p, dofs) = (bodies[k], &constrained[k]);
-        let local: &[usize] = &dofs.iter().map(|&j| touched.dof(j)).collect::<Vec<_>>();
-        let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
-        stops.check()?;
-        tally::costly();
-        let made = match model.bodies[p].body.k().ok_or_else(missing)? {
-            Stiffness::Matrix(k) => stops.interrupt.during(|| stiffness(k, 1.0 / unit, local)),
-            Stiffness::Host(k) => diagonal(k, 1.0 / unit, local),
-            Stiffness::Assembled(_) => Err(missing()),
-        };
-        let stiffness = made.map_err(|e| e.body(p))?;
-        Ok(Boundary { dofs: dofs.clone(), stiffness })
-    })?;
-    let (rows, compliance) = (&ready.rows.matrix, &ready.dual.compliance);
-    Preconditioner::new(rows, compliance[..rows.rows()].to_vec(), &ready.rows.metric, boundaries)
 }

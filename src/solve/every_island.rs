@@ -48,10 +48,7 @@ pub fn solve_islands<'a>(
         }
         return Ok(ends);
     }
-    let is_on_caller = |p: &usize| {
-        let of_host = model.bodies[*p].body.k().is_some_and(|k| k.on_caller());
-        of_host || prepared.inverse(model, *p).is_some_and(|of| of.kplus.elsewhere().is_some())
-    };
+    let is_on_caller = |p: &usize| prepared.inverse(model, *p).is_some_and(|of| of.kplus.on_caller());
     let on_caller = |k: usize| islands[k].island.bodies.iter().any(is_on_caller);
     let mut order: Vec<usize> = (0..islands.len()).collect();
     order.sort_by_key(|&k| Reverse(islands[k].dual.product_work()));

@@ -44,8 +44,12 @@ impl Problem {
         let mut problem = Self::default();
         #[cfg(feature = "loopback")]
         {
-            let ranks = crate::serving::loopback::by_environment();
-            problem.prepared.lending = ranks.map(|ranks| Lending::new(ranks, true));
+            use crate::serving::loopback::{by_environment, log};
+            problem.prepared.lending = by_environment().map(|ranks| {
+                let mut lending = Lending::new(ranks, true);
+                lending.told = Some(|[bodies, lent]| log(&format!("bodies {bodies} lent {lent}")));
+                lending
+            });
         }
         problem
     }

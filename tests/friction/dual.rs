@@ -1,6 +1,6 @@
 //! The preconditioner of the dual layer on faces with friction against the one by dense matrices.
 
-use feti_contact::dual::{Boundary, Preconditioner, TurnedFace, TurnedRow};
+use feti_contact::dual::{Boundary, BoundaryStiffness, Preconditioner, TurnedFace, TurnedRow};
 use feti_contact::error::Result;
 use feti_contact::qp::friction::{
     friction, Face, FacePreconditioner, FrictionProblem, FrictionStart, Law, OnFace,
@@ -48,7 +48,7 @@ fn of_bodies(given: &mut Given) -> OfBodies {
     let boundaries = parts
         .boundaries
         .into_iter()
-        .map(|(dofs, schur)| Boundary { dofs, stiffness: Box::new(Dense(schur)) })
+        .map(|(dofs, schur)| Boundary { dofs, stiffness: BoundaryStiffness::Own(Box::new(Dense(schur))) })
         .collect();
     let compliance = vec![0.0; given.d.len()];
     OfBodies(Preconditioner::new(&parts.b, compliance, &parts.metric, boundaries).unwrap())

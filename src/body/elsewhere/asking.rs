@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::body::boundary::Inside;
 use crate::error::Result;
 use crate::ranks::{damaged, message, value, wire_enum, wire_struct, Asked, Ranks, Request, Wire};
 
@@ -28,7 +29,9 @@ macro_rules! names {
 names! {
     /// `Factorise`: keep a K+. Answer: `Made`.
     Factorise,
-    /// [`Multiply`]. Answer: `B K+ B' x`.
+    /// [`Boundary`]: keep S_b. Answer: nothing.
+    Boundary,
+    /// [`Multiply`]. Answer: `B K+ B' x`, or `S_b x`.
     Multiply,
     /// [`Entries`]. Answer: the entries of `B K+ B'` in these rows and columns.
     Entries,
@@ -78,6 +81,15 @@ names! {
     Work,
 }
 
+/// S_b of a body whose K+ is there, times `scale`, of these dofs.
+pub struct Boundary {
+    pub kplus: u64,
+    pub form: u64,
+    pub inside: Inside,
+    pub scale: f64,
+    pub dofs: Vec<usize>,
+}
+
 /// Not `exact`: by the factor alone, which may be rounded.
 pub struct Multiply {
     pub form: u64,
@@ -97,6 +109,7 @@ pub struct Solve {
     pub x: Vec<f64>,
 }
 
+wire_struct!(Boundary { kplus, form, inside, scale, dofs });
 wire_struct!(Multiply { form, exact, x });
 wire_struct!(Entries { form, rows });
 wire_struct!(Solve { kplus, exact, x });

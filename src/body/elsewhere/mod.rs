@@ -3,14 +3,15 @@
 mod asking;
 mod joining;
 
-pub use asking::{ask, Asking, Entries, Multiply, Name, NullSpace, Owed, Solve, ABOUT_BODIES};
+pub use asking::{ask, Asking, Boundary, Entries, Multiply, Name, NullSpace, Owed, Solve, ABOUT_BODIES};
 pub use joining::{Away, InIsland, Join, Joined, Joining};
 
 use std::sync::Arc;
 
+use crate::body::boundary::Inside;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Packed};
-use crate::ranks::{damaged, Token, Wire};
+use crate::ranks::{damaged, Ranks, Token, Wire};
 
 /// A K+ that another rank keeps, with its corrections for carried motions.
 #[derive(Clone)]
@@ -25,7 +26,7 @@ pub struct Elsewhere {
     pub(super) bytes_saved: usize,
 }
 
-/// `B K+ B'` that another rank keeps.
+/// `B K+ B'`, or S_b, that another rank keeps.
 pub struct FormElsewhere {
     pub(super) token: Token,
     pub(super) order: usize,
@@ -59,6 +60,13 @@ impl Elsewhere {
         self.kplus.number
     }
 
+    /// The question for S_b of these dofs, to be kept there, and what stands for it here.
+    pub fn boundary(&self, inside: Inside, scale: f64, dofs: Vec<usize>) -> (Asking, FormElsewhere) {
+        let (token, order) = (self.kplus.ranks.token(self.rank()), dofs.len());
+        let of = Boundary { kplus: self.name(), form: token.number, inside, scale, dofs };
+        (Asking::new(self.rank(), Name::Boundary, &of), FormElsewhere { token, order, explicit: true })
+    }
+
     /// The question for `K+ x`; not `exact`: by the factor alone.
     pub fn solving(&self, exact: bool, x: Vec<f64>) -> Asking {
         Asking::new(self.rank(), Name::Solve, &Solve { kplus: self.name(), exact, x })
@@ -78,6 +86,16 @@ impl FormElsewhere {
     /// The question for the product with x; not `exact`: by a rounded factor alone.
     pub fn multiplying(&self, exact: bool, x: Vec<f64>) -> Asking {
         Asking::new(self.token.rank, Name::Multiply, &Multiply { form: self.token.number, exact, x })
+    }
+
+    /// The product, which must have its length.
+    pub fn image(&self, answer: Vec<f64>) -> Result<Vec<f64>> {
+        Some(answer).filter(|image| image.len() == self.order).ok_or_else(damaged)
+    }
+
+    /// The ranks that answer.
+    pub fn ranks(&self) -> &Arc<Ranks> {
+        &self.token.ranks
     }
 
     /// The entries of these rows and columns.

@@ -3,7 +3,8 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::body::elsewhere::{Entries, Join, Joined, Multiply, Name, NullSpace, Solve};
+use crate::body::boundary::boundary;
+use crate::body::elsewhere::{Boundary, Entries, Join, Joined, Multiply, Name, NullSpace, Solve};
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::given::Stiffness;
 use crate::body::grounded::grounded;
@@ -80,6 +81,7 @@ impl Bodies {
         self.asked[name as usize].fetch_add(1, Ordering::Relaxed);
         let task = match name {
             Name::Factorise => Task::Factorise(Wire::take(from)?),
+            Name::Boundary => Task::Boundary(Wire::take(from)?),
             Name::Multiply => Task::Multiply(Wire::take(from)?),
             Name::Entries => Task::Entries(Wire::take(from)?),
             Name::Solve => Task::Solve(Wire::take(from)?),
@@ -97,6 +99,7 @@ impl Bodies {
         let form = |name| self.store.find::<Form>(name);
         match task {
             Task::Factorise(of) => sent(self.factorise(of)),
+            Task::Boundary(of) => sent(self.boundary(of)),
             Task::Multiply(Multiply { form: name, exact, x }) => {
                 sent(form(name).and_then(|form| form.product(&x, exact)))
             }
@@ -137,6 +140,15 @@ impl Bodies {
         Ok(told)
     }
 
+    fn boundary(&self, Boundary { kplus, form, inside, scale, dofs }: Boundary) -> Result<()> {
+        let k = &self.kplus(kplus)?.k;
+        if dofs.iter().any(|dof| *dof >= k.order()) {
+            return Err(damaged());
+        }
+        self.store.keep(form, Form::Boundary(boundary(k, inside, scale, &dofs)?));
+        Ok(())
+    }
+
     fn solve(&self, Solve { kplus, exact, mut x }: Solve) -> Result<Vec<f64>> {
         let kplus = &self.kplus(kplus)?.kplus;
         if x.len() != kplus.order() {
@@ -161,6 +173,7 @@ impl Bodies {
 /// A question with its data.
 enum Task {
     Factorise(Factorise),
+    Boundary(Boundary),
     Multiply(Multiply),
     Entries(Entries),
     Solve(Solve),
@@ -169,10 +182,11 @@ enum Task {
     Ask(Box<dyn Answering>),
 }
 
-/// `B K+ B'`, assembled or not.
+/// `B K+ B'`, assembled or not, or S_b.
 enum Form {
     Explicit(Packed),
     Implicit { kplus: Arc<GeneralizedInverse>, rows: Arc<Csr> },
+    Boundary(Box<dyn Operator + Send>),
 }
 
 impl Form {
@@ -197,6 +211,7 @@ impl Form {
         match self {
             Self::Explicit(form) => form.order(),
             Self::Implicit { rows, .. } => rows.rows(),
+            Self::Boundary(form) => form.order(),
         }
     }
 
@@ -207,6 +222,7 @@ impl Form {
         let mut image = zeros(x.len(), "a product with the dual operator")?;
         match self {
             Self::Explicit(form) => form.apply(x, &mut image),
+            Self::Boundary(form) => form.apply(x, &mut image),
             Self::Implicit { kplus, rows } => {
                 let mut moved = zeros(rows.cols, "a product with the dual operator")?;
                 rows.mul_transposed_add(1.0, x, &mut moved);
@@ -230,6 +246,7 @@ impl Form {
                 Ok(packed)
             }
             Self::Implicit { kplus, rows: all } => kplus.inverse_form(&selected(all, rows)?),
+            Self::Boundary(_) => Err(damaged()),
         }
     }
 }

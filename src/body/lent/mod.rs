@@ -10,6 +10,7 @@ pub use asked::{asked, Answering};
 pub use kept::Bodies;
 pub use made::Made;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
 
 use crate::body::elsewhere::{ask, Asking, Elsewhere, Name, Owed};
@@ -33,11 +34,23 @@ pub struct Lending {
     ranks: Arc<Ranks>,
     /// Bodies are dealt out in turn, whatever they cost: for tests.
     pub all: bool,
+    /// Bodies that have been given a rank, and those of them that were lent.
+    dealt: [AtomicUsize; 2],
+    /// Hears of these at the end.
+    pub told: Option<fn([usize; 2])>,
+}
+
+impl Drop for Lending {
+    fn drop(&mut self) {
+        self.told
+            .iter()
+            .for_each(|told| told(self.dealt.each_ref().map(|dealt| dealt.load(Ordering::Relaxed))));
+    }
 }
 
 impl Lending {
     pub fn new(ranks: Arc<Ranks>, all: bool) -> Self {
-        Self { ranks, all }
+        Self { ranks, all, dealt: Default::default(), told: None }
     }
 
     /// Number of ranks, with rank 0.
@@ -48,6 +61,13 @@ impl Lending {
     /// The other ranks serve no longer.
     pub fn is_over(&self) -> bool {
         self.ranks.is_closed()
+    }
+
+    /// Counts bodies that are given a rank, and those of them that are lent.
+    pub fn count(&self, bodies: usize, lent: usize) {
+        [bodies, lent].into_iter().zip(&self.dealt).for_each(|(n, dealt)| {
+            dealt.fetch_add(n, Ordering::Relaxed);
+        });
     }
 
     pub fn traffic(&self) -> Traffic {

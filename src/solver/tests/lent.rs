@@ -158,21 +158,51 @@ fn lent_bodies_have_the_bits_and_the_work_of_those_that_stay() {
     for stiffness in [vec![4.0, 3.0, 2.0, 1.0, 5.0], vec![2.0; 7]] {
         let served = served(|_, _| None);
         let (mut lent, mut alone) = (chains(&stiffness, served.lending()), chains(&stiffness, None));
-        for explicit in ["explicit", "implicit"] {
-            let option = format!("dual_operator={explicit}");
-            [&mut lent, &mut alone].into_iter().for_each(|problem| problem.set_text(&option).unwrap());
-            assert_eq!(solved(&mut lent), solved(&mut alone), "{explicit}");
-            assert_eq!(entries(&lent), entries(&alone), "{explicit}");
+        for option in [
+            "dual_operator=explicit",
+            "dual_operator=implicit",
+            "preconditioner=lumped",
+            "preconditioner=dirichlet",
+        ] {
+            [&mut lent, &mut alone].into_iter().for_each(|problem| problem.set_text(option).unwrap());
+            assert_eq!(solved(&mut lent), solved(&mut alone), "{option}");
+            assert_eq!(entries(&lent), entries(&alone), "{option}");
         }
         [&mut lent, &mut alone].into_iter().for_each(rub);
         assert_eq!(solved(&mut lent), solved(&mut alone), "with friction");
         assert_eq!(lent.work(), alone.work());
-        let names = [Name::Factorise, Name::Multiply, Name::Entries, Name::Join, Name::Displace];
+        let names =
+            [Name::Factorise, Name::Boundary, Name::Multiply, Name::Entries, Name::Join, Name::Displace];
         assert!(names.into_iter().all(|name| served.asked(name) > 1));
         assert_eq!((served.asked(Name::Fit), served.asked(Name::Solve)), (served.asked(Name::Measure), 0));
         drop(lent);
         assert_eq!(served.end(), 0);
     }
+}
+
+/// What rank 0 has of a body elsewhere are numbers where rows touch it.
+#[test]
+fn rank_0_has_no_matrix_null_space_or_metric_of_a_lent_body() {
+    let served = served(|_, _| None);
+    let mut problem = chains(&[4.0, 3.0, 2.0, 1.0, 5.0], served.lending());
+    solved(&mut problem).unwrap();
+    let (model, prepared) = (problem.solved(), &problem.prepared);
+    let ready = &prepared.done(model).unwrap().islands[0];
+    let bodies = prepared.locals(model, ready).unwrap();
+    let mut lent = 0;
+    for (k, &p) in ready.island.bodies.iter().enumerate() {
+        let (inverse, seen) = (prepared.inverse(model, p).unwrap(), bodies.body(k));
+        let is_away = ready.away(k).is_some();
+        lent += usize::from(is_away);
+        assert_eq!(inverse.kplus.elsewhere().is_some(), is_away);
+        assert_eq!((inverse.kplus.null_space().is_err(), inverse.grounded.is_none()), (is_away, is_away));
+        assert_eq!((ready.metric.on(k).len(), seen.here().is_err()), (if is_away { 0 } else { N }, is_away));
+        assert_eq!(seen.diagonal().len(), seen.touched().len());
+    }
+    assert_eq!(lent, 4);
+    drop(bodies);
+    drop(problem);
+    assert_eq!(served.end(), 0);
 }
 
 #[test]
