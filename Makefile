@@ -191,7 +191,13 @@ driver: stage data
 # Several ranks, with the MPI of the system.
 mpi: stage
 	@tools/setup.sh libopenmpi-dev openmpi-bin libmpich-dev mpich
-	sh tests/mpi/run.sh $(STAGE) $(CURDIR) build/mpi openmpi mpich
+	$(CARGO) build --release --locked --package feti-contact-c --features loopback --target-dir build/mpi/target
+	RELEASE=build/mpi/target/release PREFIX=$(CURDIR)/build/mpi/lending DESTDIR= tools/install.sh install > /dev/null
+	mkdir -p build/mpi/problems
+	PROBLEMS=$(CURDIR)/build/mpi/problems BATTERY=$${BATTERY:-100} \
+		$(CARGO) test --release --locked --test batteries --quiet -- problems_as_files --ignored
+	LENDING=$(CURDIR)/build/mpi/lending PROBLEMS=$(CURDIR)/build/mpi/problems \
+		sh tests/mpi/run.sh $(STAGE) $(CURDIR) build/mpi openmpi mpich
 
 mpi-short: stage
 	@tools/setup.sh libopenmpi-dev openmpi-bin

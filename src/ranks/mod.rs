@@ -17,6 +17,8 @@ use crate::error::{Error, Kind, Result};
 use crate::platform::interrupt::Interrupt;
 use crate::platform::memory::filled;
 use frame::{Frame, FRAME};
+#[cfg(feature = "loopback")]
+pub use wire::spoiling;
 pub use wire::{damaged, message, put_all, value, Wire};
 pub(crate) use wire::{wire_enum, wire_struct, wire_unit};
 

@@ -58,7 +58,41 @@ macro_rules! wire_numbers {
     )+};
 }
 
-wire_numbers!(u8, u32, u64, i32, i64, f64);
+wire_numbers!(u8, u32, u64, i32, i64);
+
+impl Wire for f64 {
+    fn put(&self, to: &mut Vec<u8>) {
+        spoiled(*self).to_bits().put(to);
+    }
+
+    fn take(from: &mut &[u8]) -> Result<Self> {
+        Ok(spoiled(Self::from_bits(u64::take(from)?)))
+    }
+}
+
+/// For tests: numbers that are put or taken during `work` are wrong in their last bit, on this thread.
+#[cfg(feature = "loopback")]
+pub fn spoiling<T>(work: impl FnOnce() -> T) -> T {
+    SPOILS.set(true);
+    let done = work();
+    SPOILS.set(false);
+    done
+}
+
+#[cfg(feature = "loopback")]
+thread_local! {
+    static SPOILS: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
+
+#[cfg(feature = "loopback")]
+fn spoiled(number: f64) -> f64 {
+    f64::from_bits(number.to_bits() ^ u64::from(SPOILS.get()))
+}
+
+#[cfg(not(feature = "loopback"))]
+fn spoiled(number: f64) -> f64 {
+    number
+}
 
 /// Sends the fields of a struct, which must be all its fields.
 macro_rules! wire_struct {

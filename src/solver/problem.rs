@@ -168,7 +168,7 @@ impl Problem {
         if !self.model.bodies.is_empty() {
             return Err(Error::new(Kind::State, "the ranks must be given before the first body"));
         }
-        self.prepared.lending = Some(Lending::new(ranks, false));
+        self.prepared.lending = Some(Lending::new(ranks, cfg!(feature = "loopback")));
         Ok(())
     }
 

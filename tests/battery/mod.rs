@@ -3,6 +3,7 @@
 
 mod bits;
 mod cost;
+mod files;
 mod hard;
 mod history;
 mod marginal;

@@ -1,7 +1,8 @@
 #!/bin/sh
 # run.sh PREFIX ROOT WORK MPI...: with each MPI (openmpi, mpich, as Debian names their compilers) the installed sources for MPI are
 # compiled without a warning, as they are and with messages cut at 4096 bytes; example 15 in C and Fortran, a FORTRAN 77 host and hostile
-# hosts print on 2 and 4 ranks what they print on 1. The shared library needs no MPI.
+# hosts print on 2 and 4 ranks what they print on 1. The shared library needs no MPI. With LENDING, the prefix of a library that lends every
+# body, and PROBLEMS, a folder of problem files: also what it makes of these, bit by bit.
 set -eu
 prefix=$1 root=$2 work=$3
 shift 3
@@ -43,7 +44,7 @@ same() {
     for ranks in 2 4; do
         diff ranks1 "ranks$ranks" || fail "$mpi: $* prints something else on $ranks ranks"
     done
-    echo "$mpi: $(basename "$1") ${2-} prints the same on 1, 2 and 4 ranks"
+    echo "$mpi: $(basename "$1") $(basename "${2-}") prints the same on 1, 2 and 4 ranks"
 }
 
 # built MPI FLAG...: the programs in this folder, the sources for MPI compiled with these flags.
@@ -55,6 +56,8 @@ built() {
     $cc -std=c99 -pedantic $strict "$@" $(pkg --cflags) -I"$folder" -c "$shim" -o shim.o
     $cc -std=c99 $strict $(pkg --cflags) -I"$folder" -I"$c" "$c/$example.c" "$c/demo.c" shim.o -o example_c $link
     $cc -std=c99 $strict "$@" $(pkg --cflags) -I"$folder" "$root/tests/mpi/hostile.c" -o hostile $link -lpthread
+    [ -z "${LENDING-}" ] || $cc -std=c99 $strict $(pkg --cflags) -I"$folder" "$root/tests/mpi/files.c" shim.o -o files -L"$LENDING/lib" \
+        -Wl,-rpath,"$LENDING/lib" -lfeti_contact -lm
     $fc -O2 -Wall -J. $(pkg --variable=fortransources) $(pkg --variable=mpi_fortran_sources) "$fortran/demo.f90" "$fortran/$example.f90" \
         shim.o -o example_fortran $link
     $fc -O2 -J. -I"$face" -c $(pkg --variable=f77sources) $(pkg --variable=mpi_f77_sources)
@@ -95,6 +98,7 @@ for mpi in "$@"; do
         same "$mpi" ./example_fortran
         same "$mpi" ./lends
         for case in single freed thread outside; do same "$mpi" ./hostile "$case"; done
+        [ -z "${LENDING-}" ] || limit=600 same "$mpi" ./files "$PROBLEMS"/*.feti
         by_cmake "$mpi" "$([ "$mpi" = mpich ] && echo libmpich || echo libmpi)"
     done
     "$work/$mpi.whole/hostile" unknown >/dev/null 2>&1 && fail "hostile accepts any case"

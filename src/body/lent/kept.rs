@@ -29,15 +29,25 @@ pub type Taken = fn(Name, &mut &[u8]) -> Result<Box<dyn Answering>>;
 pub struct Bodies {
     store: Store,
     taken: Taken,
-    /// Questions of each kind so far.
+    /// Questions of each kind so far, and bytes of these and their answers.
     asked: [AtomicU64; QUESTIONS],
-    /// Of this kind the last number of each answer is wrong in its last bit: for tests.
+    bytes: [AtomicU64; QUESTIONS],
+    /// Numbers of questions of this kind and of their answers are wrong in their last bit: for tests.
+    #[cfg(feature = "loopback")]
     pub wrong: Option<Name>,
 }
 
 impl Bodies {
     pub fn new(taken: Taken) -> Self {
-        Self { store: Store::default(), taken, asked: [const { AtomicU64::new(0) }; QUESTIONS], wrong: None }
+        let [asked, bytes] = [0; 2].map(|_| [const { AtomicU64::new(0) }; QUESTIONS]);
+        Self {
+            store: Store::default(),
+            taken,
+            asked,
+            bytes,
+            #[cfg(feature = "loopback")]
+            wrong: None,
+        }
     }
 
     /// Answers a list of questions, on so many threads.
@@ -49,11 +59,8 @@ impl Bodies {
             let twice = || Error::new(Kind::Internal, "a question was answered twice");
             let task = tasks[k].lock().unwrap_or_else(PoisonError::into_inner).take();
             let (name, task) = task.ok_or_else(twice)?;
-            let mut answer = self.one(task);
-            if let Some(at) = answer.len().checked_sub(size_of::<f64>()).filter(|_| self.wrong == Some(name))
-            {
-                answer[at] ^= 1;
-            }
+            let answer = self.perhaps_wrong(name, || self.one(task));
+            self.count(name, answer.len());
             Ok(answer)
         })?;
         let mut all = crate::ranks::message(&count);
@@ -71,15 +78,43 @@ impl Bodies {
         self.asked.each_ref().map(|count| count.load(Ordering::Relaxed))
     }
 
+    /// Bytes of the questions of each kind so far, and of their answers.
+    pub fn bytes(&self) -> [u64; QUESTIONS] {
+        self.bytes.each_ref().map(|count| count.load(Ordering::Relaxed))
+    }
+
+    fn count(&self, name: Name, bytes: usize) {
+        self.bytes[name as usize].fetch_add(bytes as u64, Ordering::Relaxed);
+    }
+
     /// Number of what is kept.
     pub fn kept(&self) -> usize {
         self.store.len()
     }
 
     fn take(&self, from: &mut &[u8]) -> Result<(Name, Task)> {
-        let name = Name::take(from)?;
+        let (name, before) = (Name::take(from)?, from.len());
         self.asked[name as usize].fetch_add(1, Ordering::Relaxed);
-        let task = match name {
+        let task = self.perhaps_wrong(name, || self.task(name, from))?;
+        self.count(name, before - from.len());
+        Ok((name, task))
+    }
+
+    #[cfg(feature = "loopback")]
+    fn perhaps_wrong<T>(&self, name: Name, work: impl FnOnce() -> T) -> T {
+        match self.wrong == Some(name) {
+            true => crate::ranks::spoiling(work),
+            false => work(),
+        }
+    }
+
+    #[cfg(not(feature = "loopback"))]
+    fn perhaps_wrong<T>(&self, _: Name, work: impl FnOnce() -> T) -> T {
+        work()
+    }
+
+    fn task(&self, name: Name, from: &mut &[u8]) -> Result<Task> {
+        Ok(match name {
             Name::Factorise => Task::Factorise(Wire::take(from)?),
             Name::Boundary => Task::Boundary(Wire::take(from)?),
             Name::Multiply => Task::Multiply(Wire::take(from)?),
@@ -88,8 +123,7 @@ impl Bodies {
             Name::NullSpace => Task::NullSpace(Wire::take(from)?),
             Name::Join => Task::Join(Wire::take(from)?),
             name => Task::Ask((self.taken)(name, from)?),
-        };
-        Ok((name, task))
+        })
     }
 
     fn one(&self, task: Task) -> Vec<u8> {

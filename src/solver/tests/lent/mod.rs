@@ -1,18 +1,20 @@
-//! Bodies lent to other ranks: bits, what is kept there and for how long, and failures.
+//! Bodies lent to other ranks: bits, what is sent, what is kept there and for how long.
+
+mod failures;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
 use crate::body::{Bodies, Kept, Lending, Name};
-use crate::error::{Error, Kind, Result};
+use crate::error::Result;
 use crate::linalg::{Entries, Matrix};
-use crate::ranks::loopback::{linked, linked_by};
-use crate::ranks::{Link, Ranks};
+use crate::ranks::loopback::linked;
+use crate::ranks::Ranks;
 use crate::serving::{answer, answer_all, taken};
 use crate::solve::local::Negate;
 use crate::solve::Case;
-use crate::solver::{FrictionInput, Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
+use crate::solver::{FrictionInput, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
 /// Questions of each kind.
 type Asked = [u64; Name::ALL.len()];
@@ -78,6 +80,7 @@ struct Served {
     threads: Vec<JoinHandle<()>>,
     kept: Vec<Arc<AtomicUsize>>,
     asked: Vec<Arc<Mutex<Asked>>>,
+    bytes: Vec<Arc<Mutex<Asked>>>,
 }
 
 /// `instead`: of rank and number of the request, an answer in place of the right one.
@@ -91,11 +94,14 @@ fn serving(
     others: Vec<Arc<Ranks>>,
     instead: impl Fn(usize, usize) -> Option<Result<Vec<u8>>> + Clone + Send + 'static,
 ) -> Served {
-    let mut all = Served { leader, threads: Vec::new(), kept: Vec::new(), asked: Vec::new() };
+    let mut all =
+        Served { leader, threads: Vec::new(), kept: Vec::new(), asked: Vec::new(), bytes: Vec::new() };
     for ranks in others {
-        let (kept, asked) = (Arc::new(AtomicUsize::new(0)), Arc::new(Mutex::new([0; Name::ALL.len()])));
+        let kept = Arc::new(AtomicUsize::new(0));
+        let [asked, bytes] = [0; 2].map(|_| Arc::new(Mutex::new([0; Name::ALL.len()])));
         all.kept.push(Arc::clone(&kept));
         all.asked.push(Arc::clone(&asked));
+        all.bytes.push(Arc::clone(&bytes));
         let instead = instead.clone();
         all.threads.push(std::thread::spawn(move || {
             let (bodies, mut count) = (Bodies::new(taken), 0);
@@ -104,6 +110,7 @@ fn serving(
                 let answered = instead(ranks.rank, count).unwrap_or_else(|| answer(bodies, incoming, 1));
                 kept.store(bodies.kept(), Ordering::Relaxed);
                 *asked.lock().unwrap() = bodies.asked();
+                *bytes.lock().unwrap() = bodies.bytes();
                 answered
             });
             drop(served);
@@ -124,6 +131,11 @@ impl Served {
 
     fn asked(&self, name: Name) -> u64 {
         self.asked.iter().map(|asked| asked.lock().unwrap()[name as usize]).sum()
+    }
+
+    /// Bytes of the questions of this kind, and of their answers.
+    fn bytes(&self, name: Name) -> u64 {
+        self.bytes.iter().map(|bytes| bytes.lock().unwrap()[name as usize]).sum()
     }
 
     /// What is kept after the end.
@@ -284,127 +296,67 @@ fn a_vector_that_two_name_is_changed_for_one_alone() {
     assert_eq!(served.end(), 0);
 }
 
-/// Each request of a solve fails in each way, on each rank; the next solve is right.
-#[test]
-fn a_failure_on_another_rank_is_that_of_the_call_and_the_next_solve_is_right() {
-    let stiffness = [4.0, 3.0, 2.0, 1.0, 5.0];
-    let right = serial(&stiffness);
-    let kinds = [Some(Kind::Memory), Some(Kind::NullSpace), Some(Kind::Indefinite), None];
-    for (kind, rank) in kinds.into_iter().flat_map(|kind| [(kind, 1), (kind, 2)]) {
-        let (mut nth, mut failures) = (1, 0);
-        loop {
-            let served = served(move |at, count| {
-                let fails = (at, count) == (rank, nth);
-                fails.then(|| {
-                    Err(Error::new(kind.expect("a panic, as the test wants"), "made to fail").dof(2))
-                })
-            });
-            let mut problem = chains(&stiffness, served.lending());
-            let ended = solved(&mut problem);
-            if let Err(error) = &ended {
-                failures += 1;
-                assert_eq!(error.kind, kind.unwrap_or(Kind::Internal), "{error}");
-                assert!(kind.is_none() || error.place.dof == Some(2), "{error}");
-                assert_eq!(solved(&mut problem).as_ref(), Ok(&right), "{kind:?} {rank} {nth}");
-            } else {
-                assert_eq!(ended.as_ref(), Ok(&right));
+/// Bars of n unknowns one behind the other, of equal springs, in one problem each: floating but for the first, tied at one end and in
+/// contact at the other, with unequal springs inside that depend on the place from the ends alone.
+fn bars(n: usize, lending: Option<Lending>) -> Problem {
+    let mut problem = Problem::new();
+    problem.prepared.lending = lending;
+    for p in 0..6 {
+        let body = problem.add_body(n).unwrap();
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..n as i64 {
+            if i > 0 {
+                col.push(i - 1);
+                val.push(-1.0 - p as f64 / 16.0);
             }
-            drop(problem);
-            assert_eq!(served.end(), 0);
-            if ended.is_ok() {
-                break;
-            }
-            nth += 1;
+            col.push(i);
+            let ends = usize::from(i == 0) + usize::from(i + 1 == n as i64);
+            val.push((2 - ends) as f64 * (1.0 + p as f64 / 16.0) + if p == 0 && i == 0 { 1.0 } else { 0.0 });
+            ptr.push(col.len());
         }
-        assert!(failures >= 3, "{kind:?}: {failures} requests");
+        problem
+            .set_stiffness(body, SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower })
+            .unwrap();
+        let mut f = vec![0.0; n];
+        f[n - 1] = -1.0;
+        problem.set_load(body, &f).unwrap();
     }
+    for p in 1..6 {
+        let (body, dof) = ([p - 1, p], [n as i64 - 1, 0]);
+        let rows =
+            RowsInput { ptr: &[0, 2], body: Some(&body), dof: &dof, val: &[1.0, -1.0], rhs: Some(&[0.0]) };
+        problem.add_rows(if p % 2 == 0 { RowKind::Equality } else { RowKind::Inequality }, rows).unwrap();
+    }
+    problem
 }
 
-/// Floating chains that are said to be held: of several the first is named, wherever they are. What could be made stays.
+/// All that is sent after the matrix, the load and u are sizes and values where rows touch.
 #[test]
-fn the_error_is_that_of_the_first_body_and_others_are_not_made_again() {
-    for wrong in [vec![1, 2, 3], vec![2, 3], vec![3, 4], vec![2, 4], vec![4]] {
+fn what_is_asked_about_a_bar_does_not_depend_on_its_length() {
+    let of = [50, 200, 800].map(|n| {
         let served = served(|_, _| None);
-        let stiffness = [4.0, 3.0, 2.0, 1.0, 5.0];
-        let mut both = [chains(&stiffness, served.lending()), chains(&stiffness, None)];
-        let ends = both.each_mut().map(|problem| {
-            for &body in &wrong {
-                problem.set_null_space(body, N, 0, &[], N, Modes::Exact).unwrap();
-            }
-            let error = problem.setup().unwrap_err();
-            assert_eq!((error.kind, error.place.body), (Kind::NullSpace, Some(wrong[0])), "{error}");
-            for &body in &wrong {
-                problem.set_null_space(body, N, 1, &[1.0; N], N, Modes::Exact).unwrap();
-            }
-            (error, solved(problem).unwrap(), problem.work())
-        });
-        assert_eq!(ends[0], ends[1], "{wrong:?}");
-    }
-}
-
-/// A link that fails at a message.
-struct Failing {
-    link: Box<dyn Link>,
-    left: AtomicUsize,
-}
-
-impl Failing {
-    fn goes_on(&self) -> bool {
-        self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_ok()
-    }
-}
-
-impl Link for Failing {
-    fn send(&self, rank: usize, data: &[u8]) -> bool {
-        self.goes_on() && self.link.send(rank, data)
-    }
-
-    fn flush(&self) -> bool {
-        self.link.flush()
-    }
-
-    fn receive(&self, rank: usize, data: &mut [u8]) -> bool {
-        self.goes_on() && self.link.receive(rank, data)
-    }
-}
-
-#[test]
-fn after_a_broken_link_a_problem_goes_on_alone() {
-    let stiffness = [4.0, 3.0, 2.0, 1.0];
-    let right = serial(&stiffness);
-    let mut broken = 0;
-    for left in 0.. {
-        let (leader, others) = linked_by(3, |link| Box::new(Failing { link, left: AtomicUsize::new(left) }));
-        let served = serving(leader, others, |_, _| None);
-        let mut problem = chains(&stiffness, served.lending());
-        match solved(&mut problem) {
-            Ok(bits) => {
-                assert_eq!(bits, right);
-                break;
-            }
-            Err(error) => assert_eq!(error.kind, Kind::Communication, "{error}"),
-        }
-        broken += 1;
-        assert_eq!(solved(&mut problem).as_ref(), Ok(&right), "alone, after {left} messages");
+        let mut problem = bars(n, served.lending());
+        solved(&mut problem).unwrap();
+        let all: Vec<(Name, u64, u64)> =
+            Name::ALL.iter().map(|&name| (name, served.asked(name), served.bytes(name))).collect();
         drop(problem);
-        // the ranks that serve end when the link is gone
-        let Served { leader, threads, .. } = served;
-        drop(leader);
-        threads.into_iter().for_each(|thread| thread.join().unwrap());
+        assert_eq!(served.end(), 0);
+        all
+    });
+    let whole = [Name::Factorise, Name::Lend, Name::Bring, Name::Section];
+    let mut kinds = 0;
+    for k in 0..Name::ALL.len() {
+        let [short, long, longest] = of.each_ref().map(|all| all[k]);
+        if short.1 == 0 || whole.contains(&short.0) {
+            continue;
+        }
+        kinds += 1;
+        for (name, asked, bytes) in [long, longest] {
+            assert!(asked > 0, "{name:?}");
+            let per = |asked: u64, bytes: u64| bytes as f64 / asked as f64;
+            let ratio = per(asked, bytes) / per(short.1, short.2);
+            assert!((ratio - 1.0).abs() < 0.02, "{name:?}: {ratio}");
+        }
     }
-    assert!(broken > 20, "{broken} messages");
-}
-
-#[test]
-fn a_problem_goes_on_alone_when_the_others_serve_no_longer() {
-    let stiffness = [4.0, 3.0, 2.0, 1.0];
-    let served = served(|_, _| None);
-    let mut problem = chains(&stiffness, served.lending());
-    assert_eq!(solved(&mut problem), Ok(serial(&stiffness)));
-    served.end();
-    assert_eq!(solved(&mut problem), Ok(serial(&stiffness)));
-    let mut late = Problem::new();
-    late.add_body(1).unwrap();
-    let (leader, _others) = linked(2);
-    assert_eq!(late.lend_to(leader).unwrap_err().kind, Kind::State);
+    assert!(kinds >= 10, "{kinds}");
 }
