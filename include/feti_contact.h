@@ -1018,6 +1018,11 @@ typedef struct feti_info {
   int64_t message_bytes;
   /** Seconds in which this rank has waited for other ranks. */
   double seconds_waited;
+  /**
+   * Processor seconds of the calling thread in the last setup or solve, without work of its own bodies and
+   * without waiting: what other ranks cannot take from rank 0. NaN with one rank.
+   */
+  double seconds_leading;
 } feti_info;
 
 /**

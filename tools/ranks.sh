@@ -31,12 +31,12 @@ test_all --lib --test claims --test batteries -- $skip
 # shellcheck disable=SC2086
 BATTERY=${BATTERY:-13000} test_all --test batteries -- every_varied problems_with_friction random_driven $skip
 
-# Wrong in the last bit of the last number of its answers, each of these questions changes the bits. Of the others that number decides nothing
-# in these problems, or there is none.
+# Wrong in the last bit of its numbers and of those of its answers, each of these questions changes the bits. The others are asked for messages
+# and proofs, or have no numbers.
 unset RANKS_LOG
 BITS=200 bits > build/bits_few
-for name in Factorise Multiply Entries Bring Measure Scale FromLoad Take Displace Turn Strained Residual PointAtRows Displacement Deformation \
-    Rigid Split FreeMotions Place Sizes Left; do
+for name in Factorise Boundary Multiply Entries Join Put Bring Section Couple Fit Measure Lend Scale FromLoad Take Displace Turn Shift Strained \
+    Residual Correct Added PointAtRows Displacement Deformation Rigid FreeMotions Place Sizes Left Proof; do
     RANKS_WRONG=$name BITS=200 bits > build/bits_wrong
     if cmp -s build/bits_few build/bits_wrong; then echo "$name: a wrong answer is not seen"; exit 1; fi
 done

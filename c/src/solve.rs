@@ -70,7 +70,7 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
     let status = enter_with_status(p, call!(feti_solve(p, info)), |problem| {
         target.as_ref().map_err(Clone::clone)?;
         sizes = problem.sizes();
-        ranks = Some((count_of(p), problem.traffic()));
+        ranks = Some((count_of(p), problem.traffic(), problem.seconds_leading()));
         if problem.settings().fault_injection == 1 {
             panic!("fault injected on request");
         }
@@ -78,7 +78,7 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
         let solved = problem.solve();
         // if one group of bodies has no answer, others may have one
         found = problem.report().cloned();
-        ranks = Some((count_of(p), problem.traffic()));
+        ranks = Some((count_of(p), problem.traffic(), problem.seconds_leading()));
         solved.map(|report| of_outcome(&report.outcome))
     });
     if let Ok(Some(target)) = target {
@@ -204,7 +204,12 @@ unsafe fn answer_to_check<'a>(
 }
 
 /// The result of a solve from its report; without a report counts are zero and values NaN.
-fn info_of(status: i32, sizes: Sizes, report: Option<&Report>, ranks: Option<(usize, Traffic)>) -> feti_info {
+fn info_of(
+    status: i32,
+    sizes: Sizes,
+    report: Option<&Report>,
+    ranks: Option<(usize, Traffic, Option<f64>)>,
+) -> feti_info {
     let count = |of: fn(&Report) -> usize| report.map_or(0, |report| of(report) as i64);
     let figure = |of: fn(&Report) -> f64| report.map_or(f64::NAN, of);
     feti_info {
@@ -253,10 +258,11 @@ fn info_of(status: i32, sizes: Sizes, report: Option<&Report>, ranks: Option<(us
         slipping: count(|report| report.slipping),
         friction_steps: count(|report| report.newton),
         friction_starts: count(|report| report.starts),
-        ranks: ranks.map_or(0, |(count, _)| count as i64),
-        messages: ranks.map_or(0, |(_, traffic)| traffic.messages as i64),
-        message_bytes: ranks.map_or(0, |(_, traffic)| traffic.bytes as i64),
-        seconds_waited: ranks.map_or(f64::NAN, |(_, traffic)| traffic.seconds_waited),
+        ranks: ranks.map_or(0, |(count, ..)| count as i64),
+        messages: ranks.map_or(0, |(_, traffic, _)| traffic.messages as i64),
+        message_bytes: ranks.map_or(0, |(_, traffic, _)| traffic.bytes as i64),
+        seconds_waited: ranks.map_or(f64::NAN, |(_, traffic, _)| traffic.seconds_waited),
+        seconds_leading: ranks.and_then(|(.., leading)| leading).unwrap_or(f64::NAN),
     }
 }
 

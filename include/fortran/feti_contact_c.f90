@@ -652,6 +652,9 @@ module feti_contact_c
     integer(c_int64_t) :: message_bytes
     !> Seconds in which this rank has waited for other ranks.
     real(c_double) :: seconds_waited
+    !> Processor seconds of the calling thread in the last setup or solve, without work of its own bodies and without
+    !> waiting: what other ranks cannot take from rank 0. NaN with one rank.
+    real(c_double) :: seconds_leading
   end type
 
   interface

@@ -652,7 +652,8 @@ recursive subroutine ftsolv(ip, ni, info, nr, rinfo, ierr)
   call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, &
     found%negative_force, found%complementarity, found%duality_gap, found%energy, found%seconds_setup, &
     found%seconds_solve, real(found%factor_bytes, c_double), real(found%operator_bytes, c_double), found%friction_cone, &
-    found%friction_work, found%friction_stick, real(found%message_bytes, c_double), found%seconds_waited], nr, rinfo)
+    found%friction_work, found%friction_stick, real(found%message_bytes, c_double), found%seconds_waited, &
+    found%seconds_leading], nr, rinfo)
 end subroutine
 
 !> Verifies an answer without tangential forces against the current problem; the answer may come from another program.

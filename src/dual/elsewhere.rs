@@ -6,6 +6,7 @@ use crate::body::{Asking, FormElsewhere};
 use crate::dual::{Dual, InParallel, Subdomain};
 use crate::error::Result;
 use crate::linalg::{Operator, Packed};
+use crate::platform::stopwatch;
 
 /// `B K_p+ B'`, here or on another rank.
 #[derive(Clone)]
@@ -54,7 +55,7 @@ impl Dual {
     pub(super) fn each(&self, each: &Each, in_parallel: &InParallel<Vec<f64>>) -> Result<Vec<Vec<f64>>> {
         let is_elsewhere = |s: &Subdomain| s.kplus.elsewhere().is_some();
         let Some(first) = self.subdomains.iter().find_map(|s| s.kplus.elsewhere()) else {
-            return in_parallel(self.subdomains.len(), each.own);
+            return stopwatch::aside(|| in_parallel(self.subdomains.len(), each.own));
         };
         let questions = (0..self.subdomains.len()).filter_map(|p| Some((p, (each.asking)(p)?)));
         let owed = first.ask(questions.collect())?;
@@ -62,7 +63,7 @@ impl Dual {
             true => Ok(Vec::new()),
             false => (each.own)(p),
         };
-        let mut results = in_parallel(self.subdomains.len(), &here)?;
+        let mut results = stopwatch::aside(|| in_parallel(self.subdomains.len(), &here))?;
         for (p, answer) in owed.answers()? {
             results[p] = (each.of_answer)(p, answer?)?;
         }

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::linalg::vector::LONG;
 use crate::linalg::{Csr, Operator};
 use crate::platform::threads::parts_of;
-use crate::platform::{interrupt, tally};
+use crate::platform::{interrupt, stopwatch, tally};
 
 /// The constrained dofs of one body.
 pub struct Boundary {
@@ -127,9 +127,11 @@ impl Preconditioner {
             }
         };
         if moved.len() < LONG {
-            bodies.into_iter().for_each(|(stiffness, own, image)| stiffness.apply(own, image));
+            stopwatch::aside(|| {
+                bodies.into_iter().for_each(|(stiffness, own, image)| stiffness.apply(own, image))
+            });
         } else {
-            parts_of(bodies, |_, (stiffness, own, image)| stiffness.apply(own, image));
+            stopwatch::aside(|| parts_of(bodies, |_, (stiffness, own, image)| stiffness.apply(own, image)));
         }
         for (k, answer) in owed.answers::<Vec<f64>>()? {
             let (form, _, image) = &mut elsewhere[k];

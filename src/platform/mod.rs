@@ -8,6 +8,7 @@ pub mod pages;
 mod pools;
 pub mod shortage;
 pub mod slabs;
+pub mod stopwatch;
 mod sync;
 pub mod tally;
 pub mod threads;

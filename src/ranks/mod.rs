@@ -16,6 +16,7 @@ use std::time::Instant;
 use crate::error::{Error, Kind, Result};
 use crate::platform::interrupt::Interrupt;
 use crate::platform::memory::filled;
+use crate::platform::stopwatch;
 use frame::{Frame, FRAME};
 #[cfg(feature = "loopback")]
 pub use wire::spoiling;
@@ -262,7 +263,7 @@ impl Asked {
     fn next(&mut self) -> Result<Result<Vec<u8>>> {
         let (rank, serial) = self.waiting.remove(0);
         let begun = Instant::now();
-        let received = self.ranks.receive(rank);
+        let received = stopwatch::aside(|| self.ranks.receive(rank));
         lock(&self.ranks.traffic).seconds_waited += begun.elapsed().as_secs_f64();
         let (frame, message) = received?;
         if frame.serial != serial {

@@ -14,6 +14,20 @@ pub trait Wire: Sized {
 
     /// Takes the value from the begin of the bytes.
     fn take(from: &mut &[u8]) -> Result<Self>;
+
+    /// Several values without their number.
+    fn put_each(values: &[Self], to: &mut Vec<u8>) {
+        values.iter().for_each(|value| value.put(to));
+    }
+
+    fn take_each(count: usize, from: &mut &[u8]) -> Result<Vec<Self>> {
+        // no value but () takes no byte
+        let mut all = reserved(count.min(from.len()), WHAT)?;
+        for _ in 0..count {
+            all.push(Self::take(from)?);
+        }
+        Ok(all)
+    }
 }
 
 /// A message that consists of this value.
@@ -43,31 +57,49 @@ fn first<'a>(from: &mut &'a [u8], count: usize) -> Result<&'a [u8]> {
     Ok(own)
 }
 
+/// Numbers, sent as others with these conversions; many at once are copied.
 macro_rules! wire_numbers {
-    ($($number:ty),+) => {$(
+    ($($number:ty as $sent:ty: $to:expr, $from:expr;)+) => {$(
         impl Wire for $number {
             fn put(&self, to: &mut Vec<u8>) {
-                to.extend_from_slice(&self.to_le_bytes());
+                to.extend_from_slice(&<$sent>::to_le_bytes($to(*self)));
             }
 
             fn take(from: &mut &[u8]) -> Result<Self> {
-                let bytes = first(from, size_of::<Self>())?;
-                Ok(Self::from_le_bytes(bytes.try_into().map_err(|_| damaged())?))
+                let bytes = first(from, size_of::<$sent>())?;
+                $from(<$sent>::from_le_bytes(bytes.try_into().map_err(|_| damaged())?))
+            }
+
+            fn put_each(values: &[Self], to: &mut Vec<u8>) {
+                let begin = to.len();
+                to.resize(begin + values.len() * size_of::<$sent>(), 0);
+                for (place, value) in to[begin..].chunks_exact_mut(size_of::<$sent>()).zip(values) {
+                    place.copy_from_slice(&<$sent>::to_le_bytes($to(*value)));
+                }
+            }
+
+            fn take_each(count: usize, from: &mut &[u8]) -> Result<Vec<Self>> {
+                let bytes = first(from, count.checked_mul(size_of::<$sent>()).ok_or_else(damaged)?)?;
+                let mut all = reserved(count, WHAT)?;
+                for bytes in bytes.chunks_exact(size_of::<$sent>()) {
+                    let mut own = [0; size_of::<$sent>()];
+                    own.copy_from_slice(bytes);
+                    all.push($from(<$sent>::from_le_bytes(own))?);
+                }
+                Ok(all)
             }
         }
     )+};
 }
 
-wire_numbers!(u8, u32, u64, i32, i64);
-
-impl Wire for f64 {
-    fn put(&self, to: &mut Vec<u8>) {
-        spoiled(*self).to_bits().put(to);
-    }
-
-    fn take(from: &mut &[u8]) -> Result<Self> {
-        Ok(spoiled(Self::from_bits(u64::take(from)?)))
-    }
+wire_numbers! {
+    u8 as u8: |v| v, Ok;
+    u32 as u32: |v| v, Ok;
+    u64 as u64: |v| v, Ok;
+    i32 as i32: |v| v, Ok;
+    i64 as i64: |v| v, Ok;
+    usize as u64: |v| v as u64, |v| usize::try_from(v).map_err(|_| damaged());
+    f64 as f64: spoiled, |v| Ok(spoiled(v));
 }
 
 /// For tests: numbers that are put or taken during `work` are wrong in their last bit, on this thread.
@@ -150,16 +182,6 @@ impl Wire for () {
     }
 }
 
-impl Wire for usize {
-    fn put(&self, to: &mut Vec<u8>) {
-        (*self as u64).put(to);
-    }
-
-    fn take(from: &mut &[u8]) -> Result<Self> {
-        usize::try_from(u64::take(from)?).map_err(|_| damaged())
-    }
-}
-
 impl Wire for bool {
     fn put(&self, to: &mut Vec<u8>) {
         to.push(u8::from(*self));
@@ -180,13 +202,7 @@ impl<T: Wire> Wire for Vec<T> {
     }
 
     fn take(from: &mut &[u8]) -> Result<Self> {
-        let count = usize::take(from)?;
-        // no value but () takes no byte
-        let mut all = reserved(count.min(from.len()), WHAT)?;
-        for _ in 0..count {
-            all.push(T::take(from)?);
-        }
-        Ok(all)
+        T::take_each(usize::take(from)?, from)
     }
 }
 
@@ -194,7 +210,7 @@ impl<T: Wire> Wire for Vec<T> {
 pub fn put_all<T: Wire>(values: &[T], to: &mut Vec<u8>) {
     values.len().put(to);
     to.reserve(size_of_val(values));
-    values.iter().for_each(|value| value.put(to));
+    T::put_each(values, to);
 }
 
 impl Wire for String {

@@ -14,6 +14,7 @@ use crate::linalg::ByBody;
 use crate::model::{Lengths, Method, Preconditioning, Settings, SolvedModel};
 use crate::numbers::setup::{ASSEMBLED, ASSEMBLED_LUMPED};
 use crate::platform::memory::reserved;
+use crate::platform::stopwatch;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::qp::BetweenSolves;
 use crate::setup::islands::{Island, Members};
@@ -187,7 +188,8 @@ impl Prepared {
             true => Ok(None),
             false => drafts[island_of[p]].assemble(number_in[p]).map_err(|e| e.body(p)),
         };
-        watch.every_body(&part, assemble, |p, operator| made[p] = operator.or(made[p].take()))?;
+        let mut take = |p: usize, operator: Option<Form>| made[p] = operator.or(made[p].take());
+        stopwatch::aside(|| watch.every_body(&part, assemble, &mut take))?;
         let mut joined = joins.answers()?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
         let mut known = Shared::default();

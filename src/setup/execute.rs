@@ -8,6 +8,7 @@ use crate::error::{Error, Kind, Result};
 use crate::model::SolvedModel;
 use crate::numbers::setup::{FACTORISED, WORK};
 use crate::platform::slabs::Slabs;
+use crate::platform::stopwatch;
 use crate::platform::threads;
 use crate::progress::{SetupPart, Watch};
 use crate::setup::lending::{ranks_of, Cost};
@@ -87,9 +88,8 @@ fn make_here(
         }
         Ok(made)
     };
-    watch.every_body(&part, make, |k, of| {
-        all.push(OfBody { body: own[k].0, rank: 0, of, planned: own[k].1 });
-    })
+    let take = |k: usize, of: Factorised| all.push(OfBody { body: own[k].0, rank: 0, of, planned: own[k].1 });
+    stopwatch::aside(|| watch.every_body(&part, make, take))
 }
 
 /// Of two failures that of the first body.

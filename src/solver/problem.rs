@@ -12,6 +12,7 @@ use crate::model::{HostModel, Parts, SolvedModel, StartFrom};
 #[cfg(test)]
 use crate::platform::interrupt::Clock;
 use crate::platform::memory::Headroom;
+use crate::platform::stopwatch;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::ranks::{Ranks, Traffic};
 use crate::setup::{Prepared, Work};
@@ -36,6 +37,8 @@ pub struct Problem {
     method: Option<&'static dyn DualMethod>,
     host: Host,
     phases: Phases,
+    /// Processor seconds of the last setup or solve that the thread of the call has led; none without other ranks.
+    leading: Option<f64>,
 }
 
 impl Problem {
@@ -145,7 +148,15 @@ impl Problem {
         work: impl FnOnce(&mut Self, &mut Watch) -> Result<T>,
     ) -> Result<T> {
         let mut watch = self.host.watch(limit, self.phases);
-        let outcome = work(self, &mut watch).and_then(|done| {
+        let lends = self.prepared.lending.is_some() || cfg!(feature = "loopback");
+        let (ended, leading) = match lends {
+            true => {
+                let (ended, seconds) = stopwatch::leading(|| work(self, &mut watch));
+                (ended, Some(seconds))
+            }
+            false => (work(self, &mut watch), None),
+        };
+        let outcome = ended.and_then(|done| {
             watch.log.phases(&self.prepared.phases(&self.model, &watch.phases), usize::MAX)?;
             Ok(done)
         });
@@ -154,7 +165,7 @@ impl Problem {
             self.findings =
                 Some(self.found(Findings::of_error(&self.model, self.solved(), &self.prepared, error)));
         }
-        self.phases = self.host.ended(watch);
+        (self.phases, self.leading) = (self.host.ended(watch), leading);
         outcome
     }
 
@@ -170,6 +181,12 @@ impl Problem {
         }
         self.prepared.lending = Some(Lending::new(ranks, cfg!(feature = "loopback")));
         Ok(())
+    }
+
+    /// Processor seconds of the last setup or solve in which the thread of the call did neither work of bodies here nor wait; none without
+    /// other ranks.
+    pub fn seconds_leading(&self) -> Option<f64> {
+        self.leading
     }
 
     /// What has been exchanged with other ranks, by all problems that share their stream of messages.

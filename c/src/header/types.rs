@@ -180,6 +180,9 @@ pub struct feti_info {
     pub message_bytes: i64,
     /// Seconds in which this rank has waited for other ranks.
     pub seconds_waited: f64,
+    /// Processor seconds of the calling thread in the last setup or solve, without work of its own bodies and without
+    /// waiting: what other ranks cannot take from rank 0. NaN with one rank.
+    pub seconds_leading: f64,
 }
 
 /// Facts on the input of a body and on the results of its last setup; facts that are not known yet are -1 or NaN.

@@ -11,7 +11,7 @@ use crate::body::local::seen::Seen;
 use crate::body::local::{Heading, Local, Question};
 use crate::error::Result;
 use crate::linalg::Symmetric;
-use crate::platform::threads;
+use crate::platform::{stopwatch, threads};
 use crate::ranks::Token;
 
 /// The bodies of an island.
@@ -159,11 +159,13 @@ impl<'a> Locals<'a> {
         own: impl Fn(usize, &Q) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
         if self.threads == 1 {
-            return (0..self.bodies.len()).map(|p| own(p, &question(p))).collect();
+            return stopwatch::aside(|| (0..self.bodies.len()).map(|p| own(p, &question(p))).collect());
         }
         let questions: Vec<Q> = (0..self.bodies.len()).map(question).collect();
         let on_caller = |p: usize| self.bodies[p].here().is_ok_and(Local::on_caller);
-        threads::run_apart(self.threads, questions.len(), on_caller, |p| own(p, &questions[p]))
+        stopwatch::aside(|| {
+            threads::run_apart(self.threads, questions.len(), on_caller, |p| own(p, &questions[p]))
+        })
     }
 
     /// The values of vectors of all bodies where rows touch them, body after body.

@@ -20,12 +20,12 @@ AT(64, default_str)
 #undef TYPE
 
 #define TYPE feti_info
-SIZE(384) AT(0, struct_size) AT(8, status) AT(16, bodies) AT(64, undetermined) AT(72, steps) AT(112, coarse_solves)
+SIZE(392) AT(0, struct_size) AT(8, status) AT(16, bodies) AT(64, undetermined) AT(72, steps) AT(112, coarse_solves)
 AT(120, factorisations) AT(128, analyses) AT(136, worst) AT(144, equilibrium) AT(192, duality_gap) AT(200, energy)
 AT(208, seconds_setup) AT(216, seconds_solve) AT(224, direct_solves) AT(232, finished) AT(240, columns_computed)
 AT(248, columns_kept) AT(256, explicit_operators) AT(264, implicit_operators) AT(272, factor_bytes) AT(280, operator_bytes)
 AT(288, friction_cone) AT(304, friction_stick) AT(312, nodes) AT(344, friction_starts)
-AT(352, ranks) AT(360, messages) AT(376, seconds_waited)
+AT(352, ranks) AT(360, messages) AT(376, seconds_waited) AT(384, seconds_leading)
 #undef TYPE
 
 #define TYPE feti_phase
@@ -68,7 +68,7 @@ struct layout {
 static const struct layout in_c[] = {
     {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, node)},
     {"feti_option", sizeof(feti_option), offsetof(feti_option, default_str)},
-    {"feti_info", sizeof(feti_info), offsetof(feti_info, seconds_waited)},
+    {"feti_info", sizeof(feti_info), offsetof(feti_info, seconds_leading)},
     {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, friction_stick_node)},
     {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
     {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, capacity)},

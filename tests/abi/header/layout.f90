@@ -21,7 +21,7 @@ subroutine layout_in_fortran(size, last) bind(C, name="layout_in_fortran")
     c_sizeof(progress), c_sizeof(findings), c_sizeof(phase), c_sizeof(facts), c_sizeof(communicator)], c_int64_t)
   last = [distance(c_loc(detail), c_loc(detail%node)), &
     distance(c_loc(option), c_loc(option%default_str)), &
-    distance(c_loc(info), c_loc(info%seconds_waited)), &
+    distance(c_loc(info), c_loc(info%seconds_leading)), &
     distance(c_loc(certificate), c_loc(certificate%friction_stick_node)), &
     distance(c_loc(progress), c_loc(progress%fraction)), &
     distance(c_loc(findings), c_loc(findings%capacity)), &
