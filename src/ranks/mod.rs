@@ -65,9 +65,12 @@ pub struct Traffic {
 pub struct Request {
     pub rank: usize,
     pub question: u32,
-    /// Pieces of the message, one after the other.
-    pub messages: Vec<Vec<u8>>,
+    /// Writes it.
+    pub put: Put,
 }
+
+/// What is written to the end of a message, once.
+pub type Put = Box<dyn FnOnce(&mut Vec<u8>)>;
 
 /// A request as the rank that serves receives it.
 pub struct Incoming {
@@ -127,7 +130,7 @@ impl Ranks {
         let mut sent = Vec::with_capacity(requests.len());
         for request in requests {
             let mut message = message(&self.dropped_of(request.rank));
-            request.messages.into_iter().for_each(|piece| message.extend(piece));
+            (request.put)(&mut message);
             let serial = self.serial.fetch_add(1, Ordering::Relaxed);
             let frame = Frame::new(serial, request.question, false, message.len(), seconds_left);
             sent.push((request.rank, wire::message(&frame), message));
@@ -135,7 +138,7 @@ impl Ranks {
         }
         let is_sent = sent.iter().all(|(rank, frame, message)| self.send(*rank, frame, message));
         // also after a failure: what is on its way may not be freed
-        let is_flushed = self.link.flush();
+        let is_flushed = self.waiting(|| self.link.flush());
         if !(is_sent && is_flushed) {
             asked.waiting.clear();
             return Err(self.failed());
@@ -148,7 +151,7 @@ impl Ranks {
         if self.is_closed() {
             return Ok(());
         }
-        let request = |rank| Request { rank, question: END, messages: Vec::new() };
+        let request = |rank| Request { rank, question: END, put: Box::new(|_| {}) };
         let ended = self.ask((1..self.size).map(request).collect())?.answers();
         self.closed.store(true, Ordering::Relaxed);
         ended.map(drop)
@@ -213,6 +216,14 @@ impl Ranks {
         Ok((frame, message))
     }
 
+    /// Counts the time of `work` as waiting.
+    fn waiting<T>(&self, work: impl FnOnce() -> T) -> T {
+        let begun = Instant::now();
+        let done = stopwatch::aside(work);
+        lock(&self.traffic).seconds_waited += begun.elapsed().as_secs_f64();
+        done
+    }
+
     fn failed(&self) -> Error {
         self.closed.store(true, Ordering::Relaxed);
         Error::new(Kind::Communication, "a message could not be sent to or received from another rank")
@@ -262,10 +273,7 @@ impl Asked {
 
     fn next(&mut self) -> Result<Result<Vec<u8>>> {
         let (rank, serial) = self.waiting.remove(0);
-        let begun = Instant::now();
-        let received = stopwatch::aside(|| self.ranks.receive(rank));
-        lock(&self.ranks.traffic).seconds_waited += begun.elapsed().as_secs_f64();
-        let (frame, message) = received?;
+        let (frame, message) = self.ranks.waiting(|| self.ranks.receive(rank))?;
         if frame.serial != serial {
             self.ranks.closed.store(true, Ordering::Relaxed);
             return Err(damaged());
@@ -305,7 +313,8 @@ mod tests {
     }
 
     fn ask(ranks: &Arc<Ranks>, v: f64) -> Result<Vec<Result<Vec<u8>>>> {
-        let request = |rank| Request { rank, question: 5, messages: vec![message(&(v * rank as f64))] };
+        let request =
+            |rank| Request { rank, question: 5, put: Box::new(move |to| (v * rank as f64).put(to)) };
         ranks.ask((1..ranks.size).map(request).collect())?.answers()
     }
 
@@ -321,7 +330,7 @@ mod tests {
             let number = leader.token(2).number;
             // a request whose answers nobody takes leaves none behind, and none may be asked meanwhile
             let waiting =
-                leader.ask(vec![Request { rank: 2, question: 5, messages: vec![message(&1.0)] }]).unwrap();
+                leader.ask(vec![Request { rank: 2, question: 5, put: Box::new(|to| 1f64.put(to)) }]).unwrap();
             assert_eq!(ask(&leader, 1.0).unwrap_err().kind, Kind::Communication);
             drop(waiting);
             assert_eq!(value::<f64>(ask(&leader, 1.0).unwrap().remove(1).unwrap().as_slice()).unwrap(), 4.0);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::body::boundary::Inside;
 use crate::error::Result;
-use crate::ranks::{damaged, message, value, wire_enum, wire_struct, Asked, Ranks, Request, Wire};
+use crate::ranks::{damaged, value, wire_enum, wire_struct, Asked, Put, Ranks, Request, Wire};
 
 /// Requests of this number are lists of questions about bodies; the answer is the list of answers, each perhaps an error.
 pub const ABOUT_BODIES: u32 = 1;
@@ -122,20 +122,16 @@ pub struct NullSpace {
 /// A question to one rank.
 pub struct Asking {
     rank: usize,
-    message: Vec<u8>,
+    put: Put,
 }
 
 impl Asking {
-    pub fn new(rank: usize, name: Name, of: &impl Wire) -> Self {
-        let mut message = message(&name);
-        of.put(&mut message);
-        Self { rank, message }
-    }
-
-    /// The same question with more that is asked.
-    pub fn and(mut self, more: &impl Wire) -> Self {
-        more.put(&mut self.message);
-        self
+    pub fn new(rank: usize, name: Name, of: impl Wire + 'static) -> Self {
+        let put = move |to: &mut Vec<u8>| {
+            name.put(to);
+            of.put(to);
+        };
+        Self { rank, put: Box::new(put) }
     }
 }
 
@@ -147,15 +143,18 @@ pub struct Owed {
 
 /// Asks these questions about these bodies, one request to each rank.
 pub fn ask(ranks: &Arc<Ranks>, questions: Vec<(usize, Asking)>) -> Result<Owed> {
-    let mut of_rank: Vec<(Vec<usize>, Vec<Vec<u8>>)> = (0..ranks.size).map(|_| Default::default()).collect();
-    for (body, Asking { rank, message }) in questions {
+    let mut of_rank: Vec<(Vec<usize>, Vec<Put>)> = (0..ranks.size).map(|_| Default::default()).collect();
+    for (body, Asking { rank, put }) in questions {
         of_rank[rank].0.push(body);
-        of_rank[rank].1.push(message);
+        of_rank[rank].1.push(put);
     }
     let (mut requests, mut bodies) = (Vec::new(), Vec::new());
-    for (rank, (own, mut messages)) in of_rank.into_iter().enumerate().filter(|(_, of)| !of.0.is_empty()) {
-        messages.insert(0, message(&own.len()));
-        requests.push(Request { rank, question: ABOUT_BODIES, messages });
+    for (rank, (own, questions)) in of_rank.into_iter().enumerate().filter(|(_, of)| !of.0.is_empty()) {
+        let put = |to: &mut Vec<u8>| {
+            questions.len().put(to);
+            questions.into_iter().for_each(|put| put(to));
+        };
+        requests.push(Request { rank, question: ABOUT_BODIES, put: Box::new(put) });
         bodies.push(own);
     }
     let asked = if requests.is_empty() { None } else { Some(ranks.ask(requests)?) };

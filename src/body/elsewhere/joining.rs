@@ -104,7 +104,7 @@ impl Elsewhere {
         };
         let (member, kplus) = (name.number, self.name());
         let join = Join { member, kplus, form: new, rows: Arc::clone(rows), by, of };
-        Joining { asking: Some(Asking::new(self.rank(), Name::Join, &join)), form, name, order, unit }
+        Joining { asking: Some(Asking::new(self.rank(), Name::Join, join)), form, name, order, unit }
     }
 }
 

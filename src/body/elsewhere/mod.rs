@@ -48,7 +48,7 @@ impl Elsewhere {
     /// `R_p`, n x r.
     pub fn null_space(&self) -> Result<Matrix> {
         let of = NullSpace { kplus: self.name() };
-        alone(&self.kplus, Asking::new(self.rank(), Name::NullSpace, &of))
+        alone(&self.kplus, Asking::new(self.rank(), Name::NullSpace, of))
     }
 
     /// The rank that keeps it.
@@ -64,12 +64,12 @@ impl Elsewhere {
     pub fn boundary(&self, inside: Inside, scale: f64, dofs: Vec<usize>) -> (Asking, FormElsewhere) {
         let (token, order) = (self.kplus.ranks.token(self.rank()), dofs.len());
         let of = Boundary { kplus: self.name(), form: token.number, inside, scale, dofs };
-        (Asking::new(self.rank(), Name::Boundary, &of), FormElsewhere { token, order, explicit: true })
+        (Asking::new(self.rank(), Name::Boundary, of), FormElsewhere { token, order, explicit: true })
     }
 
     /// The question for `K+ x`; not `exact`: by the factor alone.
     pub fn solving(&self, exact: bool, x: Vec<f64>) -> Asking {
-        Asking::new(self.rank(), Name::Solve, &Solve { kplus: self.name(), exact, x })
+        Asking::new(self.rank(), Name::Solve, Solve { kplus: self.name(), exact, x })
     }
 
     /// Asks questions about several bodies.
@@ -85,7 +85,7 @@ impl FormElsewhere {
 
     /// The question for the product with x; not `exact`: by a rounded factor alone.
     pub fn multiplying(&self, exact: bool, x: Vec<f64>) -> Asking {
-        Asking::new(self.token.rank, Name::Multiply, &Multiply { form: self.token.number, exact, x })
+        Asking::new(self.token.rank, Name::Multiply, Multiply { form: self.token.number, exact, x })
     }
 
     /// The product, which must have its length.
@@ -101,7 +101,7 @@ impl FormElsewhere {
     /// The entries of these rows and columns.
     pub fn block(&self, rows: Vec<usize>) -> Result<Packed> {
         let of = Entries { form: self.token.number, rows };
-        alone(&self.token, Asking::new(self.token.rank, Name::Entries, &of))
+        alone(&self.token, Asking::new(self.token.rank, Name::Entries, of))
     }
 }
 

@@ -90,6 +90,6 @@ impl Lending {
     ) -> (Asking, Arc<Token>) {
         let token = Arc::new(self.ranks.token(rank));
         let (kplus, of, plan) = (token.number, of.map(Elsewhere::name), Arc::clone(plan));
-        (Asking::new(rank, Name::Factorise, &Factorise { kplus, of, rounded, plan }), token)
+        (Asking::new(rank, Name::Factorise, Factorise { kplus, of, rounded, plan }), token)
     }
 }

@@ -142,7 +142,7 @@ impl<'a> Locals<'a> {
         for (p, body) in self.bodies.iter().enumerate() {
             let Some(Away { name: token, .. }) = body.away() else { continue };
             let heading = heading(p, token.number)?;
-            asked.push((p, Asking::new(token.rank, Q::NAME, &heading).and(&question(p))));
+            asked.push((p, Asking::new(token.rank, Q::NAME, (heading, question(p)))));
         }
         let owed = ask(&first.ranks, asked)?;
         let question = |p: usize| self.bodies[p].away().is_none().then(|| question(p));
