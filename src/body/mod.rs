@@ -19,6 +19,7 @@ mod hints;
 mod host;
 mod host_probe;
 mod in_order;
+mod judged;
 mod known;
 mod last;
 mod layout;

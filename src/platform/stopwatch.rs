@@ -28,10 +28,12 @@ pub fn aside<T>(work: impl FnOnce() -> T) -> T {
 
 #[cfg(target_os = "linux")]
 fn processor() -> f64 {
+    use std::time::Duration;
+
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: a valid place for the time
     unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
-    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32).as_secs_f64()
 }
 
 #[cfg(not(target_os = "linux"))]

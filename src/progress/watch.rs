@@ -136,7 +136,7 @@ impl Watch {
     }
 
     /// Reports to the host the completed part of the setup.
-    fn part_done(&mut self) -> Result<()> {
+    pub fn part_done(&mut self) -> Result<()> {
         self.tell(&Progress::of_setup(self.fraction, self.stops.seconds()))?;
         self.stops.check()
     }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use crate::body::{grounded, Elsewhere, Factorised, GeneralizedInverse, Made, Owed, Plan, Symbolic, Token};
 use crate::error::{Error, Kind, Result};
 use crate::model::SolvedModel;
-use crate::numbers::setup::{FACTORISED, WORK};
+use crate::numbers::setup::{ANALYSED, FACTORISED, ROUND, WORK};
 use crate::platform::slabs::Slabs;
 use crate::platform::stopwatch;
 use crate::platform::threads;
@@ -15,6 +15,7 @@ use crate::setup::lending::{ranks_of, Cost};
 use crate::setup::operators::Operators;
 use crate::setup::plans::of_coordinates;
 use crate::setup::prepared::{Inverse, Prepared};
+use crate::setup::rounds::{rounds, Round};
 
 /// Bodies that represent others, their plans, and the bodies whose factors they use.
 pub(super) struct Planned<'a> {
@@ -23,6 +24,8 @@ pub(super) struct Planned<'a> {
     pub factors: Vec<Option<usize>>,
     /// Of all bodies: the factor may be rounded.
     pub rounded: &'a [bool],
+    /// Of all bodies: operations of the factorisation.
+    pub work: &'a dyn Fn(usize) -> f64,
 }
 
 /// K+ by body and rank.
@@ -64,19 +67,19 @@ impl Lent {
     }
 }
 
-/// Factorises bodies here, into `all`.
+/// Factorises bodies here, into `all`. `until`: the fraction of the setup at the end.
 fn make_here(
     model: &SolvedModel,
     plans: Vec<(usize, Arc<Plan>)>,
     rounded: &[bool],
-    watch: &mut Watch,
+    (watch, until): (&mut Watch, f64),
     all: &mut Vec<OfBody>,
 ) -> Result<()> {
     let own: Vec<(usize, usize)> = plans.iter().map(|(p, plan)| (*p, plan.bytes())).collect();
     let plans: Vec<_> = plans.into_iter().map(|(_, plan)| Mutex::new(Some(plan))).collect();
     // operations grow like the power 3/2 of the entries
     let weights = own.iter().map(|(_, bytes)| (*bytes as f64).powf(WORK)).collect();
-    let part = SetupPart::of(model.threads(), weights, FACTORISED);
+    let part = SetupPart::of(model.threads(), weights, until);
     let slabs = Slabs::of(own.iter().filter(|(p, _)| rounded[*p]).map(|(_, bytes)| bytes / 2).sum())?;
     let make = |k: usize| {
         let plan = plans[k].lock().ok().and_then(|mut plan| plan.take()).and_then(Arc::into_inner);
@@ -144,7 +147,7 @@ impl Prepared {
     pub(super) fn execute(
         &mut self,
         model: &SolvedModel,
-        Planned { pending, plans, factors, rounded }: Planned,
+        Planned { pending, plans, factors, rounded, work }: Planned,
         (representatives, ranks): (&[usize], &[usize]),
         watch: &mut Watch,
     ) -> Result<OnRanks> {
@@ -152,7 +155,7 @@ impl Prepared {
         for (p, rank) in ranks.iter().enumerate() {
             ranks_of.entry(representatives[p]).or_default().insert(*rank);
         }
-        let (mut own, mut lent, mut others) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut all, mut others) = (Round::default(), Vec::new());
         for ((&p, plan), factor) in pending.iter().zip(plans).zip(factors) {
             let plan = Arc::new(plan);
             if let Some(q) = factor {
@@ -160,18 +163,33 @@ impl Prepared {
                 continue;
             }
             let elsewhere = ranks_of[&p].iter().filter(|rank| **rank > 0);
-            lent.extend(elsewhere.map(|rank| (p, *rank, Arc::clone(&plan))));
-            own.extend(ranks_of[&p].contains(&0).then_some((p, plan)));
+            all.lent.extend(elsewhere.map(|rank| (p, *rank, Arc::clone(&plan))));
+            all.own.extend(ranks_of[&p].contains(&0).then_some((p, plan)));
         }
-        let (lent, mut made) = (self.lent(lent, rounded, watch)?, Vec::new());
-        let mut ended = make_here(model, own, rounded, watch, &mut made);
-        for (p, answer) in lent.answers()? {
-            match answer {
-                Ok(of) => made.push(of),
-                Err(error) => {
-                    let error = of_coordinates(&model.bodies[p].body, error).body(p);
-                    ended = first_of_bodies(ended, error);
+        let (mut made, mut ended) = (Vec::new(), Ok(()));
+        let least = if self.lending.as_ref().is_some_and(|lending| lending.all) { 1.0 } else { ROUND };
+        let rounds = rounds(all, work, (model.threads(), least));
+        let count = rounds.len();
+        for (k, Round { lent, own }) in rounds.into_iter().enumerate() {
+            let left = (count - k - 1) as f64 / count as f64;
+            let until = FACTORISED - left * (FACTORISED - ANALYSED);
+            let lent = self.lent(lent, rounded, watch)?;
+            if let Err(error) = make_here(model, own, rounded, (watch, until), &mut made) {
+                ended = first_of_bodies(ended, error);
+            }
+            for (p, answer) in lent.answers()? {
+                match answer {
+                    Ok(of) => made.push(of),
+                    Err(error) => {
+                        let error = of_coordinates(&model.bodies[p].body, error).body(p);
+                        ended = first_of_bodies(ended, error);
+                    }
                 }
+            }
+            // a host that wants to end does not wait for the next round
+            if let Err(error) = if k + 1 < count { watch.part_done() } else { Ok(()) } {
+                ended = first_of_bodies(ended, error);
+                break;
             }
         }
         let mut all = self.kept(model, made, &ranks_of)?;

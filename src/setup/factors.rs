@@ -66,7 +66,8 @@ impl Prepared {
         (0..ranks.len()).filter(|p| ranks[*p] == 0).for_each(|p| here[representatives[p]] = true);
         let on_others = (0..pending.len()).filter(|k| !here[pending[*k]]).map(bytes_of).sum::<usize>();
         self.check_memory(model, &operators, bytes, on_others + operators.bytes_on_others(&ranks))?;
-        let planned = Planned { pending: &pending, plans, factors, rounded: &rounded };
+        let work = |p: usize| operators.sizes[p].factorisation();
+        let planned = Planned { pending: &pending, plans, factors, rounded: &rounded, work: &work };
         let ended = self.execute(model, planned, (&representatives, &ranks), watch);
         watch.phases.ended(Phase::Factorisation, begun);
         self.share(&representatives, &ranks, ended?);

@@ -16,6 +16,7 @@ mod preconditioner;
 mod prepared;
 mod ready;
 mod rounding;
+mod rounds;
 mod rows;
 mod scaling;
 mod separate;

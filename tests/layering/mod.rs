@@ -115,7 +115,7 @@ const INJECTED: (&str, &str) = ("c/src/solve.rs", "panic!");
 /// What makes one slice of the unknowns of an island, brings their values from the bodies, or reads K of the model, which another rank may
 /// have: solve and certificate see the answers to questions, except where K of all bodies is factorised.
 const OF_BODIES: [&str; 6] =
-    ["in_sequence", "ByBody::of(", ".unknowns()", ".bring(", ".body.k()", ".body.stiffness"];
+    ["in_sequence", "ByBody::of(", ".unknowns()", ".bring(", "].body.k()", "].body.stiffness"];
 const IN_ONE_PLACE: &str = "src/solve/sparse_face.rs";
 /// What is brought for the host: u of the answer, and motions that prove something.
 const FOR_THE_HOST: [&str; 4] =

@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 
 use crate::body::{Bodies, Kept, Lending, Name};
 use crate::error::Result;
-use crate::linalg::{Entries, Matrix};
+use crate::linalg::{Entries, Matrix, Operator};
 use crate::ranks::loopback::linked;
 use crate::ranks::Ranks;
 use crate::serving::{answer, answer_all, taken};
@@ -213,6 +213,24 @@ fn rank_0_has_no_matrix_null_space_or_metric_of_a_lent_body() {
     }
     assert_eq!(lent, 4);
     drop(bodies);
+    drop(problem);
+    assert_eq!(served.end(), 0);
+}
+
+/// Two numbers for each row of a body, and what does not depend on rows.
+#[test]
+fn a_product_is_one_request_and_one_answer_on_each_rank_and_two_numbers_for_each_row_of_a_body() {
+    let served = served(|_, _| None);
+    let mut problem = chains(&[4.0, 3.0, 2.0, 1.0, 5.0], served.lending());
+    solved(&mut problem).unwrap();
+    let before = (problem.traffic(), served.asked(Name::Multiply), served.bytes(Name::Multiply));
+    let dual = &problem.prepared.done(problem.solved()).unwrap().islands[0].dual;
+    let mut image = vec![0.0; dual.order()];
+    dual.try_apply(&vec![1.0; dual.order()], &mut image).unwrap();
+    let after = (problem.traffic(), served.asked(Name::Multiply), served.bytes(Name::Multiply));
+    assert_eq!((after.0.messages - before.0.messages, after.1 - before.1), (4, 4));
+    // chains 0, 1, 3, 4 are lent: 1, 2, 2, 1 rows
+    assert_eq!(after.2 - before.2, 16 * 6 + 26 * 4);
     drop(problem);
     assert_eq!(served.end(), 0);
 }
