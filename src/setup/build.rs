@@ -23,7 +23,7 @@ use crate::setup::prepared::{Duals, Prepared};
 use crate::setup::ready::{Apart, Ready};
 use crate::setup::rows::DualRows;
 use crate::setup::separate::islands;
-use crate::setup::whole::Whole;
+use crate::setup::whole::{OfParts, Whole};
 
 /// An island without its dual.
 struct WithRows {
@@ -206,17 +206,14 @@ impl Prepared {
             }
             let dual = draft.finish(parts, compliance, !rows.coupled);
             let dual = known.share(dual.key(), dual, Dual::same);
-            let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
-            let of_part = |part: usize| {
-                let missing = || Error::new(Kind::State, "a body has not been set up");
-                let inverse = inverse(part).ok_or_else(missing)?;
-                let grounded = match &inverse.grounded {
-                    Some(grounded) => Arc::clone(grounded),
-                    None => self.grounded(model, part)?,
-                };
-                Ok((&inverse.kplus, grounded))
+            let missing = || Error::new(Kind::State, "a body has not been set up");
+            let inverse = |part: usize| self.bodies[part].inverse.as_ref().ok_or_else(missing);
+            let grounded = |part: usize| match &inverse(part)?.grounded {
+                Some(grounded) => Ok(Arc::clone(grounded)),
+                None => self.grounded(model, part),
             };
-            let whole = Whole::of(model, &island, &of_part)?;
+            let kplus = |part: usize| Ok(&inverse(part)?.kplus);
+            let whole = Whole::of(model, &island, &OfParts { kplus: &kplus, grounded: &grounded })?;
             let some_away = away.iter().any(Option::is_some);
             let away: Box<[Option<Away>]> = if some_away { away.into() } else { Box::default() };
             let metric = if some_away { Arc::new(metric.only(|k| away[k].is_none())) } else { metric };

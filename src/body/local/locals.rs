@@ -133,11 +133,8 @@ impl<'a> Locals<'a> {
         own: impl Fn(usize, &Q) -> Result<T> + Sync,
         of_answer: impl Fn(usize, Q::Answer) -> T,
     ) -> Result<Vec<T>> {
-        let Some(Away { name: first, .. }) =
-            self.bodies.iter().find_map(Seen::away).filter(|_| self.some_away)
-        else {
-            return self.here(question, own);
-        };
+        let away = self.some_away.then(|| self.bodies.iter().find_map(Seen::away)).flatten();
+        let Some(Away { name: first, .. }) = away else { return self.here(question, own) };
         let mut asked = Vec::new();
         for (p, body) in self.bodies.iter().enumerate() {
             let Some(Away { name: token, .. }) = body.away() else { continue };

@@ -55,12 +55,16 @@ impl Basis {
     }
 }
 
-/// K+ and grounded unknowns of a part.
-pub type OfPart<'a> = dyn Fn(usize) -> Result<(&'a Arc<GeneralizedInverse>, Arc<[u32]>)> + Sync + 'a;
+/// What has been made of parts.
+pub struct OfParts<'a> {
+    pub kplus: &'a (dyn Fn(usize) -> Result<&'a Arc<GeneralizedInverse>> + Sync),
+    /// Grounded unknowns.
+    pub grounded: &'a (dyn Fn(usize) -> Result<Arc<[u32]>> + Sync),
+}
 
 impl Whole {
     /// None for an island without pieces.
-    pub fn of(model: &SolvedModel, cut: &Island, of_part: &OfPart) -> Result<Option<Self>> {
+    pub fn of(model: &SolvedModel, cut: &Island, of_parts: &OfParts) -> Result<Option<Self>> {
         let Some(parts) = model.parts.as_ref() else { return Ok(None) };
         if !cut.bodies.iter().any(|&part| model.is_piece(part)) {
             return Ok(None);
@@ -119,11 +123,11 @@ impl Whole {
         let equalities = Arc::new(equalities);
         let (bodies, ranges) = (bodies.into(), Arc::new(ranges));
         let island = Island { bodies, ranges, touched, contact, equalities, friction, unit };
-        let is_away = |part: usize| of_part(part).is_ok_and(|(kplus, _)| kplus.on_caller());
+        let is_away = |part: usize| (of_parts.kplus)(part).is_ok_and(|kplus| kplus.on_caller());
         let on_caller = |k: usize| parts.of(island.bodies[k]).any(is_away);
         let bodies = threads::run_apart(model.threads(), island.bodies.len(), on_caller, |k| {
             let (body, part) = (island.bodies[k], part_of[k]);
-            let made = whole_body(model, parts, (body, part), of_part);
+            let made = whole_body(model, parts, (body, part), of_parts);
             made.map_err(|e| e.body(part.unwrap_or(parts.first[body])))
         })?;
         Ok(Some(Self { island, bodies, body_of, place }))
@@ -229,12 +233,12 @@ fn whole_body(
     model: &SolvedModel,
     parts: &Parts,
     (body, part): (usize, Option<usize>),
-    of_part: &OfPart,
+    of_parts: &OfParts,
 ) -> Result<WholeBody> {
     let missing = || Error::new(Kind::State, "a body has not been set up");
     let Some(k) = &parts.assembled[body] else {
         let part = part.ok_or_else(missing)?;
-        let (kplus, grounded) = of_part(part)?;
+        let (kplus, grounded) = ((of_parts.kplus)(part)?, (of_parts.grounded)(part)?);
         let soft = kplus.is_soft();
         let null_space = match kplus.elsewhere() {
             None => Basis::Known(Arc::clone(kplus)),
@@ -245,7 +249,7 @@ fn whole_body(
     let mut soft = false;
     let mut bases = reserved(parts.of(body).len(), WHAT)?;
     for part in parts.of(body) {
-        let (kplus, _) = of_part(part)?;
+        let kplus = (of_parts.kplus)(part)?;
         soft |= kplus.is_soft();
         bases.push(kplus.free_motions()?);
     }
