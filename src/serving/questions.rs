@@ -22,7 +22,7 @@ pub fn taken(name: Name, from: &mut &[u8]) -> Result<Box<dyn Answering>> {
         Put Bring Section Couple Fit Measure Largest SizeOfLoad Lend LoadOf
         Scale FromLoad Take Loaded Displace Turn Slide
         Begin Shift Strained Residual Correct Added PointAtRows Displacement Deformation
-        Rebased Rigid Split Along FreeMotions Place Energy Negate
+        Rigid Split Along FreeMotions Place Energy Negate
         Sizes Left Proof Work
     }
 }

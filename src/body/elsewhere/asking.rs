@@ -67,7 +67,6 @@ names! {
     PointAtRows,
     Displacement,
     Deformation,
-    Rebased,
     Rigid,
     Split,
     Along,

@@ -12,39 +12,12 @@ const WHAT: &str = "a motion";
 
 wire_unit!(Rigid, Split, Energy, Negate);
 wire_struct!(Parted { at_rows, slides });
-wire_struct!(Rebased { vectors });
 wire_struct!(Along { a });
 wire_struct!(Moved { v, size, loose });
 wire_struct!(FreeMotions { rounding });
 wire_struct!(FreeMotionsAtRows { at_rows, fastest, gram });
 wire_struct!(Place { a });
 wire_struct!(EnergyOfMotion { stored, terms, entries, length, fastest });
-
-/// Asks for T with `R_host = R T` for the null space that the host has given, r x r; the identity without.
-pub struct Rebased {
-    /// n x r, no unit.
-    pub vectors: Option<Matrix>,
-}
-
-impl Question for Rebased {
-    const NAME: Name = Name::Rebased;
-    type Answer = Matrix;
-    type Kept = ();
-    type Given = ();
-
-    /// `R'D R_host`, as R'DR = I.
-    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<Matrix> {
-        let r = body.null_space.cols;
-        let mut t = Matrix::zeros(r, r)?;
-        (0..r).for_each(|j| t.set(j, j, 1.0));
-        if let Some(vectors) = &self.vectors {
-            for k in 0..r.min(vectors.cols) {
-                t.col_mut(k).copy_from_slice(&rigid_part(body, vectors.col(k))?);
-            }
-        }
-        Ok(t)
-    }
-}
 
 /// Asks for `R'D u` over the modes of the dual.
 pub struct Rigid;
