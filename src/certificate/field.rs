@@ -41,9 +41,13 @@ pub(super) struct AtRows {
 impl<'a> Field<'a> {
     /// With what the bodies keep of it.
     pub fn new(data: &'a Data<'a>, answer: Candidate<'a>) -> Result<(Self, Kept<Felt>)> {
-        let stiffest = |body: &Seen| Some(body.stiffest()).filter(|d| *d > 0.0).unwrap_or(data.without(body));
-        let unit = power_of_two_below(data.bodies.iter().map(stiffest).fold(0.0, f64::max));
-        let at = AtRows::new(data, answer, unit)?;
+        let of = |body: &Seen<'a>| (body.diagonal(), body.stiffest(), data.without(body));
+        let all: Vec<_> = data.bodies.iter().map(of).collect();
+        let largest =
+            all.iter().map(|(_, stiffest, without)| if *stiffest > 0.0 { *stiffest } else { *without });
+        let unit = power_of_two_below(largest.fold(0.0, f64::max));
+        let coupled = || data.bodies.ask(|_| Couple, ());
+        let at = AtRows::new(data, answer, &Trace::new(all, &coupled), unit)?;
         let told = |p: usize| {
             let range = data.touched.range(p);
             let told = Told {
@@ -92,14 +96,11 @@ impl<'a> Field<'a> {
 }
 
 impl AtRows {
-    fn new<'a>(data: &Data<'a>, answer: Candidate, unit: f64) -> Result<Self> {
+    fn new(data: &Data, answer: Candidate, trace: &Trace, unit: f64) -> Result<Self> {
         let touched = data.touched;
         let forces = RowKind::ALL.map(|kind| answer.forces(kind));
         let holds = |kind: usize, i: usize| kind == RowKind::Equality as usize || forces[kind][i] != 0.0;
-        let of = |body: &Seen<'a>| (body.diagonal(), body.stiffest(), data.without(body));
-        let coupled = || data.bodies.ask(|_| Couple, ());
-        let trace = Trace::new(data.bodies.iter().map(of), &coupled);
-        let search = Search::new(&trace, RowKind::ALL.map(|kind| data.rows(kind)), &holds, unit)?;
+        let search = Search::new(trace, RowKind::ALL.map(|kind| data.rows(kind)), &holds, unit)?;
         let led = search.clone().led()?;
         let Metric { values: metric, carried: places } = search.metric()?;
         let mut carried = vec![false; touched.len()];

@@ -66,6 +66,11 @@ pub fn norm_max(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |largest, v| v.abs().max(largest))
 }
 
+/// Number of the first entry that is largest in size; 0 without entries.
+pub fn fastest(v: &[f64]) -> usize {
+    (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best })
+}
+
 /// `y += a x`
 pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {

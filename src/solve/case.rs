@@ -7,7 +7,7 @@ use crate::body::{Kept, Locals};
 use crate::certificate::{Data, Lend, Load};
 use crate::constraints::RowKind;
 use crate::error::Result;
-use crate::linalg::vector::norm_max;
+use crate::linalg::vector::{self, norm_max};
 use crate::model::SolvedModel;
 use crate::platform::memory::zeros;
 use crate::setup::{Island, Prepared, Ready};
@@ -47,7 +47,7 @@ impl<'a> Case<'a> {
         self.island().scatter(self.model, own, &mut v);
         let largest = norm_max(&v);
         v.iter_mut().for_each(|v| *v /= largest);
-        let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+        let fastest = vector::fastest(&v);
         let body = self.model.offsets[1..].partition_point(|end| *end <= fastest);
         Ok((v, body, fastest - self.model.offsets[body]))
     }

@@ -4,6 +4,7 @@
 use crate::constraints::RowKind;
 use crate::dual::dependent_rows;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::vector;
 use crate::linalg::Csr;
 use crate::platform::memory::zeros;
 use crate::qp::AnswerFace;
@@ -43,7 +44,7 @@ impl Problem {
         if let Some(parts) = self.parts() {
             v = parts.mean(&v)?;
         }
-        let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+        let fastest = vector::fastest(&v);
         let largest = v.get(fastest).copied().unwrap_or(1.0);
         v.iter_mut().for_each(|v| *v /= largest);
         let body = self.model.offsets[1..].partition_point(|end| *end <= fastest);

@@ -6,7 +6,7 @@ use crate::constraints::{FrictionNode, RowKind};
 use crate::error::{self, Error, Kind, Result};
 use crate::linalg::graph::joined;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{norm_max, ratio, weighted_norm};
+use crate::linalg::vector::{self, norm_max, ratio, weighted_norm};
 use crate::model::Accuracy;
 use crate::numbers::solve::{BEYOND, LOAD_RANGE};
 use crate::platform::memory::zeros;
@@ -207,8 +207,7 @@ impl Unheld {
     fn named(&self, case: Case, mut v: Vec<f64>, stiff: bool, why: &str) -> Error {
         let body = case.island().bodies[self.body];
         let range = case.model.range(body);
-        let fastest =
-            range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+        let fastest = range.start + vector::fastest(&v[range.clone()]);
         let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
         let what = format!(
             "the load moves the body and no contact force can hold it (|resultant| / |load| = {:.1e} of the bodies that move \

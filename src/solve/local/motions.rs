@@ -7,6 +7,7 @@ use crate::linalg::vector::{norm_max, weighted_norm};
 use crate::linalg::Matrix;
 use crate::numbers::solve::FAR;
 use crate::platform::memory::{copied, filled, zeros};
+use crate::solve::local::displaced::turn;
 
 const WHAT: &str = "a motion";
 
@@ -90,8 +91,7 @@ impl Question for Along {
     fn answer(&self, body: &Local, v: &mut Vec<f64>, _: ()) -> Result<Option<Moved>> {
         let Some(a) = &self.a else { return Ok(None) };
         let dual = body.dual()?;
-        *v = zeros(body.order(), WHAT)?;
-        body.null_space.mul_add(1.0 / dual.size, a, v);
+        *v = turn(body, a)?;
         let (_, terms) = body.products(v, WHAT)?;
         let stiff = |j: usize| body.stiffness.metric(j, 0.0) > 0.0;
         let loose = weighted_norm(v, |j| if stiff(j) { 0.0 } else { dual.metric[j] });

@@ -4,7 +4,7 @@ use crate::body::{wire_struct, wire_unit, Local, Name, Question};
 use crate::certificate::Load;
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{axpy, dot, weighted_norm};
+use crate::linalg::vector::{axpy, dot, fastest, weighted_norm};
 use crate::platform::memory::{copied, zeros};
 use crate::solve::local::displaced::resultants;
 
@@ -167,8 +167,7 @@ impl Question for Proof {
         body.stiffness.mul(v, &mut strained)?;
         let metric = body.dual()?.metric;
         let strain = weighted_norm(&strained, |j| 1.0 / metric[j]);
-        let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
-        let (moved, is_stiff) = (v.iter().any(|v| *v != 0.0), body.stiffness.metric(fastest, 0.0) > 0.0);
+        let (moved, is_stiff) = (v.iter().any(|v| *v != 0.0), body.stiffness.metric(fastest(v), 0.0) > 0.0);
         Ok(ProofOfBody { at_rows: body.at_rows(v), moved, work, strain, is_stiff })
     }
 }
