@@ -58,6 +58,8 @@ pub use grounded::grounded;
 pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER};
 pub use layout::{Layout, Symbolic};
 pub use lent::{asked, Answering, Bodies, Lending, Made};
+#[cfg(feature = "loopback")]
+pub use local::answers;
 pub use local::{Bring, Distributed, Kept, Local, LocalDual, Locals, Put, Question, Section, Seen};
 pub use misfit::Misfit;
 pub use null_space::{Modes, NullSpaceInput};

@@ -14,7 +14,7 @@ mod column;
 mod coordinates;
 mod driven;
 mod oracle;
-mod random;
+pub mod random;
 mod units;
 mod weak;
 

@@ -205,6 +205,11 @@ fn with_drive(mut deck: Deck, seed: u64, drive: f64) -> Deck {
     deck
 }
 
+/// A deck driven by a part of its stiffness, which rows may hold or not.
+pub fn driven(seed: u64) -> Deck {
+    with_drive(drawn(seed), seed, Random::new(seed ^ 0x40).decades(-3.0, -0.5))
+}
+
 /// The deck driven rho times as much as it takes where the rows are closed that are so without drive; none where none holds it.
 fn case(seed: u64) -> Option<(Deck, f64)> {
     let deck = drawn(seed);

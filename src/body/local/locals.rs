@@ -29,6 +29,13 @@ pub type OfSection<'a> = (Cow<'a, Symmetric>, Cow<'a, [f64]>);
 /// Entries of K, below which a question about all bodies costs less than waking other threads.
 const PARALLEL_PAYS: usize = 1 << 18;
 
+/// Tests count the answers.
+fn answered<Q: Question>(answer: Q::Answer) -> Q::Answer {
+    #[cfg(feature = "loopback")]
+    crate::body::local::answers::answered(Q::NAME, &answer);
+    answer
+}
+
 impl<'a> Locals<'a> {
     pub fn new(bodies: Vec<Seen<'a>>, threads: usize) -> Self {
         // few bodies share their own work among the threads
@@ -60,7 +67,10 @@ impl<'a> Locals<'a> {
             let given = Q::Given::names(given, p)?;
             Ok(Heading { body, kept: None, from: None, given })
         };
-        let own = |p: usize, q: &Q| q.answer(self.bodies[p].here()?, &mut (), Q::Given::of(given, p)?);
+        let own = |p: usize, q: &Q| {
+            let answer = q.answer(self.bodies[p].here()?, &mut (), Q::Given::of(given, p)?);
+            answer.map(answered::<Q>)
+        };
         self.each(question, heading, own, |_, answer| answer)
     }
 
@@ -83,7 +93,7 @@ impl<'a> Locals<'a> {
         let own = |p: usize, q: &Q| {
             let mut kept = Q::Kept::default();
             let answer = q.answer(self.bodies[p].here()?, &mut kept, Q::Given::of(given, p)?)?;
-            Ok((answer, Some(kept)))
+            Ok((answered::<Q>(answer), Some(kept)))
         };
         let made = self.each(question, heading, own, |_, answer| (answer, None))?;
         let (answers, kept): (_, Vec<_>) = made.into_iter().unzip();
@@ -120,7 +130,7 @@ impl<'a> Locals<'a> {
         let cells = kept.cells();
         let own = |p: usize, q: &Q| {
             let given = Q::Given::of(given, p)?;
-            cells[p].change(|kept| q.answer(self.bodies[p].here()?, kept, given))
+            cells[p].change(|kept| q.answer(self.bodies[p].here()?, kept, given).map(answered::<Q>))
         };
         self.each(question, heading, own, |_, answer| answer)
     }
@@ -145,7 +155,7 @@ impl<'a> Locals<'a> {
         let question = |p: usize| self.bodies[p].away().is_none().then(|| question(p));
         let mut all = self.here(question, |p, q| Ok(q.as_ref().map(|q| own(p, q))))?;
         for (p, answer) in owed.answers::<Q::Answer>()? {
-            all[p] = Some(answer.map(|answer| of_answer(p, answer)));
+            all[p] = Some(answer.map(|answer| of_answer(p, answered::<Q>(answer))));
         }
         all.into_iter().map(|of| of.ok_or_else(crate::ranks::damaged)?).collect()
     }

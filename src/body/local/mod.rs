@@ -1,6 +1,8 @@
 //! The bodies of an island and what is asked about them. What belongs to one body stays with it: its K, K+, null space, and whatever is
 //! kept of a solve over its unknowns. Questions bring it sizes, amplitudes and values where rows touch it, and it answers with such.
 
+#[cfg(feature = "loopback")]
+pub mod answers;
 mod brought;
 mod kept;
 mod locals;
