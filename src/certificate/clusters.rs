@@ -72,6 +72,16 @@ impl Question for Couple {
 }
 
 impl Coupled {
+    /// `max |K_ij|`, force / length.
+    pub fn strongest(&self) -> f64 {
+        self.strongest
+    }
+
+    /// Beside bodies with this one.
+    pub fn beside(self, strongest: f64) -> Self {
+        Self { strongest: self.strongest.max(strongest), ..self }
+    }
+
     pub fn of(k: Stiffness, touched: &[u32]) -> Result<Self> {
         let (mut pairs, mut strongest) = (Vec::new(), 0.0f64);
         let couple = |i: usize, j: usize, v: f64| {

@@ -27,6 +27,8 @@ pub struct Decomposition {
     /// For bodies that are cut.
     copies: Vec<Option<Copies>>,
     of: Revisions,
+    /// All parts have their matrices.
+    pub has_matrices: bool,
 }
 
 impl Decomposition {
@@ -56,7 +58,7 @@ impl Decomposition {
         copies.iter_mut().enumerate().for_each(|(body, own)| drop(own.take_if(|_| !all.is_cut(body))));
         model.revisions = host.revisions;
         model.parts = Some(Arc::new(all));
-        let mut made = Self { model, copies, of: host.revisions };
+        let mut made = Self { model, copies, of: host.revisions, has_matrices: true };
         made.refresh(host)?;
         Ok(Some(made))
     }
@@ -65,6 +67,16 @@ impl Decomposition {
     pub fn is_of(&self, host: &HostModel) -> bool {
         let loose = self.model.parts.iter().flat_map(|parts| &parts.loose);
         self.of == host.revisions && loose.into_iter().all(|&j| host.load(j) == 0.0)
+    }
+
+    /// Drops the matrices of parts that other ranks have; those of whole bodies are the host's own.
+    pub fn let_go(&mut self, is_away: impl Fn(usize) -> bool) {
+        let Some(parts) = &self.model.parts else { return };
+        let is_copy = |part: usize| !parts.parts[part].whole && is_away(part);
+        for (_, given) in self.model.bodies.iter_mut().enumerate().filter(|(part, _)| is_copy(*part)) {
+            given.body.stiffness = None;
+            self.has_matrices = false;
+        }
     }
 
     /// Takes over data that may change without a new setup: options, loads, right-hand sides, laws of friction.

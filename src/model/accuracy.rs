@@ -4,8 +4,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::body::{Body, Stiffness};
-use crate::certificate::{led, Coupled, Trace};
+use crate::body::Body;
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::hash::{hash, START};
@@ -49,21 +48,20 @@ pub struct Lengths<'a> {
 }
 
 impl SolvedModel {
-    pub fn lengths(&self) -> Result<Lengths<'_>> {
-        let held = self.held()?;
+    /// The load of a body, if it is more than 64 eps of the largest.
+    pub fn loads_that_count<'a>(&'a self) -> impl Fn(usize) -> Option<&'a [f64]> {
         let loads = self.bodies.iter().filter_map(|given| given.body.load.as_ref());
         let least = NOISE * loads.map(|load| norm_max(load)).fold(0.0, f64::max);
-        let of_body = |(body, start): (&Body, &usize)| {
-            let by_load = match (&body.load, body.k()) {
-                (Some(load), Some(_)) if norm_max(load) > least => {
-                    load.iter().zip(&held[*start..]).map(|(f, held)| f.abs() / held).sum()
-                }
-                _ => 0.0f64,
-            };
-            body.coordinates.as_ref().map_or(by_load, |given| by_load.max(given.length()))
+        move |body| self.bodies[body].body.load.as_deref().filter(|load| norm_max(load) > least)
+    }
+
+    /// `by_loads`: of every body `sum_j |f_j| / D^_j`.
+    pub fn lengths(&self, by_loads: &[f64]) -> Result<Lengths<'_>> {
+        let of_body = |(body, by_load): (&Body, &f64)| {
+            body.coordinates.as_ref().map_or(*by_load, |given| by_load.max(given.length()))
         };
         let of_bodies: Vec<f64> =
-            self.bodies.iter().map(|given| &given.body).zip(&self.offsets).map(of_body).collect();
+            self.bodies.iter().map(|given| &given.body).zip(by_loads).map(of_body).collect();
         let mut length = of_bodies.iter().copied().fold(0.0, f64::max);
         let gaps = || {
             let with_entries = (0..self.contact.len()).filter(|&i| !self.contact.is_empty_row(i));
@@ -78,7 +76,7 @@ impl SolvedModel {
             .map(|i| self.equalities.rhs[i].abs() / self.equalities.largest_entry(i))
             .chain(gaps().map(|gap| -gap))
             .fold(length, f64::max);
-        let mut tied = filled(held.len(), false, WHAT)?;
+        let mut tied = filled(self.sizes().dofs, false, WHAT)?;
         let rigid = (0..self.equalities.len()).filter(|&i| self.equalities.compliance[i] == 0.0);
         rigid.flat_map(|i| self.equalities.matrix.row(i)).for_each(|(j, _)| tied[j] = true);
         let mut lengths = Lengths { model: self, of_bodies, whole: length, tied, core: Vec::new() };
@@ -90,20 +88,6 @@ impl SolvedModel {
             lengths.core = core(&self.equalities)?;
         }
         Ok(lengths)
-    }
-
-    /// What holds every unknown, D^, force / length; infinite without stiffness.
-    fn held(&self) -> Result<Vec<f64>> {
-        let n = self.sizes().dofs;
-        let bodies = self.bodies.iter().map(|given| given.body.k());
-        let Some(bodies) = bodies.collect::<Option<Vec<_>>>() else {
-            return filled(n, f64::INFINITY, WHAT);
-        };
-        let all = |k: &Stiffness| (0..k.order() as u32).collect::<Vec<_>>();
-        let of = |k: &Stiffness| (k.diagonal_at(&all(k)), k.stiffest(), f64::INFINITY);
-        let coupled = || bodies.iter().map(|k| Coupled::of(*k, &all(k))).collect();
-        let trace = Trace::new(bodies.iter().map(of), &coupled);
-        led(&trace, RowKind::ALL.map(|kind| self.rows(kind)), &|_, _| true, 1.0)
     }
 
     /// The accuracy of rows that the host makes from coordinates: `data_accuracy`, raised to what the digits of the

@@ -4,6 +4,7 @@ use crate::body::{asked, Answering, Bring, Name, Put, Section};
 use crate::certificate::{Couple, Fit, Largest, Lend, LoadOf, Measure, SizeOfLoad};
 use crate::error::Result;
 use crate::ranks::damaged;
+use crate::setup::Way;
 use crate::solve::local::*;
 
 /// Takes a question of this kind from a message.
@@ -19,7 +20,7 @@ pub fn taken(name: Name, from: &mut &[u8]) -> Result<Box<dyn Answering>> {
         };
     }
     of! {
-        Put Bring Section Couple Fit Measure Largest SizeOfLoad Lend LoadOf
+        Put Bring Section Couple Fit Measure Largest SizeOfLoad Way Lend LoadOf
         Scale FromLoad Take Loaded Displace Turn Slide
         Begin Shift Strained Residual Correct Added PointAtRows Displacement Deformation
         Rigid Split Along FreeMotions Place Energy Negate

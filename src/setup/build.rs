@@ -18,6 +18,7 @@ use crate::platform::stopwatch;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::qp::BetweenSolves;
 use crate::setup::islands::{Island, Members};
+use crate::setup::lengths::first_lengths;
 use crate::setup::operators::Operators;
 use crate::setup::prepared::{Duals, Prepared};
 use crate::setup::ready::{Apart, Ready};
@@ -65,13 +66,15 @@ impl Prepared {
     pub fn set_up(&mut self, model: &SolvedModel, watch: &mut Watch) -> Result<()> {
         let begun = Instant::now();
         self.follow(model);
-        let lengths = model.lengths()?;
-        lengths.check_empty_rows()?;
         if self.is_up_to_date(model) {
+            let lengths = self.lengths(model)?;
+            lengths.check_empty_rows()?;
             return self.refresh(&lengths);
         }
-        self.release();
         let islands = islands(model)?;
+        let lengths = first_lengths(model, &islands)?;
+        lengths.check_empty_rows()?;
+        self.release();
         let mut with_rows = reserved(islands.len(), "groups of bodies")?;
         let (mut known, mut metrics) = (Shared::default(), Shared::default());
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];

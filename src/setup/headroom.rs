@@ -21,8 +21,7 @@ impl Prepared {
     /// Room for setup, solve and check while the result is kept.
     pub fn working_headroom(&self, model: &SolvedModel) -> Result<Headroom> {
         let rows = model.contact.len() + model.equalities.len();
-        // a body without stiffness will be refused, so its size does not matter
-        let dofs: usize = model.bodies.iter().filter_map(|given| given.body.k()).map(|k| k.order()).sum();
+        let dofs = model.sizes().dofs;
         let entries = model.contact.matrix.col.len() + model.equalities.matrix.col.len();
         let modes_of = |p: usize| self.modes(model, p);
         let modes: usize = (0..model.bodies.len()).map(modes_of).sum();

@@ -8,6 +8,7 @@ mod host;
 mod islands;
 mod join;
 mod lending;
+mod lengths;
 mod locals;
 mod memory_limit;
 mod operators;
@@ -23,6 +24,7 @@ mod separate;
 mod whole;
 
 pub use islands::{Island, Members};
+pub use lengths::Way;
 pub use prepared::{Duals, Inverse, Prepared, Work};
 pub use ready::Ready;
 pub use whole::Whole;

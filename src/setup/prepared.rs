@@ -117,6 +117,18 @@ impl Prepared {
         own?.inverse.as_deref()
     }
 
+    /// A setup reads the matrices of bodies.
+    pub fn is_due(&self, model: &SolvedModel) -> bool {
+        !self.is_up_to_date(model) || self.lending.as_ref().is_some_and(Lending::is_over)
+    }
+
+    /// Another rank has the body, and nothing here reads its matrix until the next setup: bodies that are cut are judged here.
+    pub fn is_away(&self, body: usize) -> bool {
+        let is_there = self.bodies[body].inverse.as_ref().is_some_and(|of| of.kplus.elsewhere().is_some());
+        let island = |duals: &Duals| duals.islands[duals.island_of[body]].whole().is_none();
+        is_there && self.duals.as_ref().is_some_and(island)
+    }
+
     /// Drops data of old revisions, except data that can be reused.
     pub fn follow(&mut self, model: &SolvedModel) {
         if self.lending.as_ref().is_some_and(|lending| lending.is_over()) {

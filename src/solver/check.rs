@@ -5,7 +5,7 @@ use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::model::HostModel;
 use crate::solve::{named, Case};
-use crate::solver::decomposed::solved;
+use crate::solver::decomposed::{of_host, solved};
 use crate::solver::joints::with_glue;
 use crate::solver::problem::Problem;
 
@@ -40,8 +40,10 @@ impl Problem {
         self.decompose()?;
         let Self { model: host, decomposition, prepared, .. } = self;
         let model = solved(host, decomposition);
-        host.lengths()?.check_empty_rows()?;
-        prepared.refresh(&model.lengths()?)?;
+        let told = |error| of_host(host, decomposition, error);
+        let lengths = prepared.lengths(model).map_err(told)?;
+        lengths.check_empty_rows().map_err(told)?;
+        prepared.refresh(&lengths)?;
         let counts = host.sizes();
         let lengths = [
             ("n", u, counts.dofs),

@@ -62,14 +62,21 @@ impl Problem {
         // the memory limit includes a solve, which may follow
         self.watched("setup", f64::INFINITY, |problem, watch| {
             problem.decompose()?;
-            let Self { model, decomposition, prepared, .. } = problem;
-            let solved = solved(model, decomposition);
-            if !prepared.is_up_to_date(solved) {
+            if !problem.prepared.is_up_to_date(problem.solved()) {
                 watch.phases = Phases::default();
-                begin(&watch.log, model, "setup")?;
+                begin(&watch.log, &problem.model, "setup")?;
             }
-            prepared.set_up(solved, watch).map_err(|e| problem.of_host(e))
+            problem.set_up(watch)
         })
+    }
+
+    /// Of what other ranks have of parts nothing is kept here.
+    fn set_up(&mut self, watch: &mut Watch) -> Result<()> {
+        let Self { model, decomposition, prepared, .. } = self;
+        let ended = prepared.set_up(solved(model, decomposition), watch);
+        ended.map_err(|e| of_host(model, decomposition, e))?;
+        decomposition.iter_mut().for_each(|of| of.let_go(|part| prepared.is_away(part)));
+        Ok(())
     }
 
     /// Solves (10)-(11) for the present loads and gaps. An incomplete answer is kept; the report says how good it is. If
@@ -90,10 +97,10 @@ impl Problem {
         watch.phases = Phases::default();
         self.decompose()?;
         noticed::loose(&watch.log, &self.model, self.parts())?;
+        self.set_up(watch)?;
         let Self { model, decomposition, prepared, history, method: other, .. } = self;
         let (host, model) = (&*model, solved(model, decomposition));
         let told = |error| of_host(host, decomposition, error);
-        prepared.set_up(model, watch).map_err(told)?;
         prepared.set_up_preconditioner(model, watch).map_err(told)?;
         watch.log.phases(&prepared.phases(model, &watch.phases), Phase::DualSolve as usize)?;
         method(&watch.log, model, prepared, start.name())?;
@@ -265,8 +272,11 @@ impl Problem {
     pub(super) fn decompose(&mut self) -> Result<()> {
         self.model.check_complete()?;
         self.connected.follow(&self.model)?;
+        let serves = |known: &Decomposition| {
+            known.is_of(&self.model) && (known.has_matrices || !self.prepared.is_due(&known.model))
+        };
         match &mut self.decomposition {
-            Some(known) if known.is_of(&self.model) => known.refresh(&self.model),
+            Some(known) if serves(known) => known.refresh(&self.model),
             None if !Decomposition::is_due(&self.model, &self.connected) => Ok(()),
             _ => {
                 let made = Decomposition::of(&self.model, &self.connected)?;
@@ -277,11 +287,6 @@ impl Problem {
                 Ok(())
             }
         }
-    }
-
-    /// Converts an error about parts to one about bodies.
-    pub(super) fn of_host(&self, error: Error) -> Error {
-        of_host(&self.model, &self.decomposition, error)
     }
 
     /// Converts findings about parts to findings about bodies.

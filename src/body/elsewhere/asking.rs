@@ -49,6 +49,7 @@ names! {
     Measure,
     Largest,
     SizeOfLoad,
+    Way,
     Lend,
     LoadOf,
     Scale,
