@@ -169,7 +169,7 @@ rungs:
 ranks:
 	@tools/ranks.sh
 
-# The bits of many answers, a line for 100: `make bits > before`, then again after a change that is to keep them.
+# The bits of many answers, two of every problem, a line for 100: `make bits > before`, then again after a change that is to keep them.
 bits:
 	@BATTERY=$(or $(BITS),1000) $(CARGO) test --release --locked --quiet --test batteries -- \
 	    the_bits_of_many --ignored --nocapture | grep ': [0-9a-f]\{16\}$$'

@@ -19,6 +19,7 @@ mod friction;
 mod part;
 mod row;
 mod rows;
+mod way;
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -39,6 +40,7 @@ use field::Field;
 use forces::{Forces, Given};
 pub use part::{Fit, Largest, Lend, LoadOf, Measure, SizeOfLoad};
 use rows::JudgedRows;
+pub use way::Way;
 
 /// One island in terms of the host's data.
 #[derive(Clone)]

@@ -1,10 +1,9 @@
 //! The questions about bodies of islands, by their names.
 
 use crate::body::{asked, Answering, Bring, Name, Put, Section};
-use crate::certificate::{Couple, Fit, Largest, Lend, LoadOf, Measure, SizeOfLoad};
+use crate::certificate::{Couple, Fit, Largest, Lend, LoadOf, Measure, SizeOfLoad, Way};
 use crate::error::Result;
 use crate::ranks::damaged;
-use crate::setup::Way;
 use crate::solve::local::*;
 
 /// Takes a question of this kind from a message.

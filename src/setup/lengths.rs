@@ -3,45 +3,14 @@
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use crate::body::{wire_struct, Local, Locals, Name, Question, Seen};
-use crate::certificate::{led, Couple, Coupled, Trace};
+use crate::body::{Local, Locals, Seen};
+use crate::certificate::{led, Couple, Coupled, Trace, Way};
 use crate::constraints::RowKind;
-use crate::error::Result;
+use crate::error::{Error, Kind, Result};
 use crate::linalg::Matrix;
 use crate::model::{Lengths, SolvedModel};
-use crate::ranks::damaged;
 use crate::setup::islands::Island;
 use crate::setup::prepared::Prepared;
-
-/// Asks for `sum_j |f_j| / D^_j`, a length.
-pub struct Way {
-    /// f_p, force; none if it is only rounding.
-    load: Option<Arc<[f64]>>,
-    /// D^ where rows touch the body, t, force / length, infinite without stiffness.
-    held: Vec<f64>,
-}
-
-wire_struct!(Way { load, held });
-
-impl Question for Way {
-    const NAME: Name = Name::Way;
-    type Answer = f64;
-    type Kept = ();
-    type Given = ();
-
-    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<f64> {
-        let Some(load) = &self.load else { return Ok(0.0) };
-        if load.len() != body.order() || body.touched.len() != self.held.len() {
-            return Err(damaged());
-        }
-        let mut at_rows = body.touched.iter().zip(&self.held).peekable();
-        let held = |j: usize| match at_rows.next_if(|(dof, _)| **dof as usize == j) {
-            Some((_, held)) => *held,
-            None => body.stiffness.metric(j, f64::INFINITY),
-        };
-        Ok(load.iter().zip((0..load.len()).map(held)).map(|(f, held)| f.abs() / held).sum())
-    }
-}
 
 /// An island and its bodies.
 type OfIsland<'b> = (&'b Island, Locals<'b>);
@@ -54,12 +23,13 @@ fn lengths<'a, 'b>(
 ) -> Result<Lengths<'a>> {
     let (loads, mut all) = (model.loads_that_count(), vec![0.0; model.bodies.len()]);
     // what is little is so beside all bodies: a pilot may be an island
+    let others = if count > 1 { 0..count } else { 0..0 };
     let (mut stiffest, strongest) = (0.0f64, OnceCell::new());
-    for k in 0..count {
+    for k in others.clone() {
         stiffest = of(k)?.1.iter().map(Seen::stiffest).fold(stiffest, f64::max);
     }
     let find_strongest = || {
-        (0..count).try_fold(0.0, |most: f64, k| {
+        others.clone().try_fold(0.0, |most: f64, k| {
             Ok(of(k)?.1.ask(|_| Couple, ())?.iter().map(Coupled::strongest).fold(most, f64::max))
         })
     };
@@ -70,7 +40,10 @@ fn lengths<'a, 'b>(
             strongest.set(most).ok();
             Ok(bodies.ask(|_| Couple, ())?.into_iter().map(|own| own.beside(most)).collect())
         };
-        let of = |body: &Seen| (body.diagonal().into_owned(), stiffest, f64::INFINITY);
+        let of = |body: &Seen| {
+            let stiffest = if count > 1 { stiffest } else { body.stiffest() };
+            (body.diagonal().into_owned(), stiffest, f64::INFINITY)
+        };
         let trace = Trace::new(bodies.iter().map(of), &coupled);
         let held = led(&trace, RowKind::ALL.map(|kind| &island.members(kind).rows), &|_, _| true, 1.0)?;
         let way = |at: usize| Way {
@@ -84,13 +57,14 @@ fn lengths<'a, 'b>(
 
 /// The lengths of a model that is not set up, whose bodies have their matrices here.
 pub(super) fn first_lengths<'a>(model: &'a SolvedModel, islands: &[Island]) -> Result<Lengths<'a>> {
-    let none = Matrix::zeros(0, 0)?;
+    let (none, missing) =
+        (Matrix::zeros(0, 0)?, || Error::new(Kind::Internal, "a body without stiffness is set up"));
     let of = |k: usize| {
         let island = &islands[k];
         let local = |(at, p): (usize, &usize)| {
             let body = &model.bodies[*p].body;
             Ok(Seen::Here(Local {
-                stiffness: body.k().ok_or_else(damaged)?,
+                stiffness: body.k().ok_or_else(missing)?,
                 null_space: &none,
                 soft: false,
                 unit: body.without(island.unit),

@@ -24,7 +24,6 @@ mod separate;
 mod whole;
 
 pub use islands::{Island, Members};
-pub use lengths::Way;
 pub use prepared::{Duals, Inverse, Prepared, Work};
 pub use ready::Ready;
 pub use whole::Whole;

@@ -33,7 +33,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
     ("dual", &["error", "numbers", "platform", "linalg", "body", "constraints"]),
     ("qp", &["error", "numbers", "platform", "linalg"]),
     ("certificate", &["error", "numbers", "platform", "linalg", "body", "constraints"]),
-    ("model", &["error", "numbers", "platform", "linalg", "mesh", "body", "constraints", "certificate"]),
+    ("model", &["error", "numbers", "platform", "linalg", "mesh", "body", "constraints"]),
     ("decomposition", &["error", "numbers", "platform", "linalg", "mesh", "body", "constraints", "model"]),
     ("progress", &["error", "numbers", "platform", "qp"]),
     (

@@ -12,7 +12,6 @@ use crate::body::local::{Heading, Local, Question};
 use crate::error::Result;
 use crate::linalg::Symmetric;
 use crate::platform::{stopwatch, threads};
-use crate::ranks::Token;
 
 /// The bodies of an island.
 #[derive(Clone)]
@@ -71,7 +70,7 @@ impl<'a> Locals<'a> {
             let answer = q.answer(self.bodies[p].here()?, &mut (), Q::Given::of(given, p)?);
             answer.map(answered::<Q>)
         };
-        self.each(question, heading, own, |_, answer| answer)
+        self.each(question, heading, own)
     }
 
     /// Asks about every body what makes something that is kept.
@@ -80,28 +79,13 @@ impl<'a> Locals<'a> {
         question: impl Fn(usize) -> Q,
         given: <Q::Given as Given>::All<'_>,
     ) -> Result<(Vec<Q::Answer>, Kept<Q::Kept>)> {
-        let named = |away: &Away| Arc::new(away.name.ranks.token(away.name.rank));
-        let tokens: Vec<Option<Arc<Token>>> = match self.some_away {
-            true => self.bodies.iter().map(|body| body.away().map(named)).collect(),
-            false => Vec::new(),
+        let nothing = |body: &Seen| match body.away() {
+            Some(Away { name, .. }) => OfBody::Elsewhere(Arc::new(name.ranks.token(name.rank))),
+            None => OfBody::Here(Q::Kept::default()),
         };
-        let token = |p: usize| tokens.get(p).and_then(Option::as_ref);
-        let heading = |p: usize, body| {
-            let given = Q::Given::names(given, p)?;
-            Ok(Heading { body, kept: token(p).map(|token| token.number), from: None, given })
-        };
-        let own = |p: usize, q: &Q| {
-            let mut kept = Q::Kept::default();
-            let answer = q.answer(self.bodies[p].here()?, &mut kept, Q::Given::of(given, p)?)?;
-            Ok((answered::<Q>(answer), Some(kept)))
-        };
-        let made = self.each(question, heading, own, |_, answer| (answer, None))?;
-        let (answers, kept): (_, Vec<_>) = made.into_iter().unzip();
-        let kept = kept.into_iter().enumerate().map(|(p, own)| match (own, token(p)) {
-            (None, Some(token)) => OfBody::Elsewhere(Arc::clone(token)),
-            (own, _) => OfBody::Here(own.unwrap_or_default()),
-        });
-        Ok((answers, Kept::wherever(kept.collect())))
+        let mut kept = Kept::wherever(self.bodies.iter().map(nothing).collect());
+        let answers = self.change(question, &mut kept, given)?;
+        Ok((answers, kept))
     }
 
     /// Asks about every body what changes what is kept.
@@ -132,17 +116,16 @@ impl<'a> Locals<'a> {
             let given = Q::Given::of(given, p)?;
             cells[p].change(|kept| q.answer(self.bodies[p].here()?, kept, given).map(answered::<Q>))
         };
-        self.each(question, heading, own, |_, answer| answer)
+        self.each(question, heading, own)
     }
 
     /// The bodies that are elsewhere are asked about first, by one request to each rank, and answered last.
-    fn each<Q: Question, T: Send>(
+    fn each<Q: Question>(
         &self,
         question: impl Fn(usize) -> Q,
         heading: impl Fn(usize, u64) -> Result<Heading>,
-        own: impl Fn(usize, &Q) -> Result<T> + Sync,
-        of_answer: impl Fn(usize, Q::Answer) -> T,
-    ) -> Result<Vec<T>> {
+        own: impl Fn(usize, &Q) -> Result<Q::Answer> + Sync,
+    ) -> Result<Vec<Q::Answer>> {
         let away = self.some_away.then(|| self.bodies.iter().find_map(Seen::away)).flatten();
         let Some(Away { name: first, .. }) = away else { return self.here(question, own) };
         let mut asked = Vec::new();
@@ -155,7 +138,7 @@ impl<'a> Locals<'a> {
         let question = |p: usize| self.bodies[p].away().is_none().then(|| question(p));
         let mut all = self.here(question, |p, q| Ok(q.as_ref().map(|q| own(p, q))))?;
         for (p, answer) in owed.answers::<Q::Answer>()? {
-            all[p] = Some(answer.map(|answer| of_answer(p, answered::<Q>(answer))));
+            all[p] = Some(answer.map(answered::<Q>));
         }
         all.into_iter().map(|of| of.ok_or_else(crate::ranks::damaged)?).collect()
     }

@@ -1,6 +1,7 @@
 //! Bodies lent to other ranks: bits, what is sent, what is kept there and for how long.
 
 mod failures;
+mod parts;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -215,72 +216,6 @@ fn rank_0_has_no_matrix_null_space_or_metric_of_a_lent_body() {
     drop(bodies);
     drop(problem);
     assert_eq!(served.end(), 0);
-}
-
-/// Chains of these springs in one K, the first held, each pushed to the one before.
-fn chains_in_one(stiffness: &[f64], lending: Option<Lending>) -> Problem {
-    let mut problem = Problem::new();
-    problem.prepared.lending = lending;
-    let body = problem.add_body(N * stiffness.len()).unwrap();
-    set_all(&mut problem, stiffness);
-    let f: Vec<f64> = (0..N * stiffness.len()).map(|i| if i % N == N - 1 { -1.0 } else { 0.125 }).collect();
-    problem.set_load(body, &f).unwrap();
-    (1..stiffness.len()).for_each(|p| touch(&mut problem, [N * p - 1, N * p], 0.1));
-    problem
-}
-
-fn set_all(problem: &mut Problem, stiffness: &[f64]) {
-    let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
-    for i in 0..N * stiffness.len() {
-        let k = stiffness[i / N];
-        if i % N > 0 {
-            col.push(i as i64 - 1);
-            val.push(-k);
-        }
-        col.push(i as i64);
-        val.push(if i > 0 && (i % N == 0 || i % N + 1 == N) { k } else { 2.0 * k });
-        ptr.push(col.len());
-    }
-    let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
-    problem.set_stiffness(0, input).unwrap();
-}
-
-fn touch(problem: &mut Problem, [i, j]: [usize; 2], gap: f64) {
-    let (dof, val) = ([i as i64, j as i64], [1.0, -1.0]);
-    let rows = RowsInput { ptr: &[0, 2], body: Some(&[0, 0]), dof: &dof, val: &val, rhs: Some(&[gap]) };
-    problem.add_rows(RowKind::Inequality, rows).unwrap();
-}
-
-/// Those here keep it, and those that need it again get it from the host's.
-#[test]
-fn a_lent_part_of_a_matrix_has_no_copy_of_it_on_rank_0() {
-    let served = served(|_, _| None);
-    let stiffness = [4.0, 3.0, 2.0, 1.0, 5.0];
-    let (mut lent, mut alone) =
-        (chains_in_one(&stiffness, served.lending()), chains_in_one(&stiffness, None));
-    let mut agree = |change: fn(&mut Problem), lent: &mut Problem| {
-        change(&mut alone);
-        change(lent);
-        assert_eq!(solved(lent), solved(&mut alone));
-    };
-    let here = |problem: &Problem| {
-        let parts = problem.solved().bodies.iter();
-        parts.map(|given| given.body.stiffness.is_some()).collect::<Vec<_>>()
-    };
-    let at_first = [false, false, true, false, false];
-    agree(|_| {}, &mut lent);
-    assert_eq!(here(&lent), at_first);
-    let factorised = served.asked(Name::Factorise);
-    agree(|problem| problem.set_load(0, &[-0.5; 5 * N]).unwrap(), &mut lent);
-    agree(|problem| touch(problem, [2, N + 2], 0.05), &mut lent);
-    assert_eq!((here(&lent), served.asked(Name::Factorise)), (at_first.to_vec(), factorised), "new rows");
-    agree(|problem| set_all(problem, &[4.0, 3.0, 2.0, 8.0, 5.0]), &mut lent);
-    assert_eq!(here(&lent), at_first, "new values");
-    served.leader.end().unwrap();
-    agree(|problem| problem.set_load(0, &[-0.25; 5 * N]).unwrap(), &mut lent);
-    assert_eq!(here(&lent), [true; 5], "without other ranks");
-    drop(lent);
-    served.end();
 }
 
 /// Two numbers for each row of a body, and what does not depend on rows.
