@@ -70,11 +70,12 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub fn new(
-        Trace { diagonal, without, stiffest, coupled }: &Trace,
+        trace: &Trace,
         rows: [&'a RowSet; 3],
         holds: &'a dyn Fn(usize, usize) -> bool,
         unit: f64,
     ) -> Result<Self> {
+        let Trace { diagonal, without, .. } = trace;
         let n = diagonal.len();
         let (mut values, mut stiffness) = (reserved(n, WHAT)?, reserved(n, WHAT)?);
         let value = |(d, without): (&f64, &f64)| if *d > 0.0 { *d } else { *without };
@@ -83,8 +84,8 @@ impl<'a> Search<'a> {
         let mut held = filled(n + 1, false, WHAT)?;
         held[n] = true;
         let mut search = Self { rows, holds, unit, clusters: None, values, stiffness, held };
-        if search.is_needed(stiffest / unit) {
-            search.clusters = Some(Rc::new(Clusters::of(coupled()?, rows)?));
+        if search.is_needed(trace.most() / unit) {
+            search.clusters = Some(Rc::new(trace.clusters(rows)?));
         }
         Ok(search)
     }
@@ -274,8 +275,7 @@ impl<'a> Search<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Stiffness;
-    use crate::certificate::clusters::Coupled;
+    use crate::body::{Local, Locals, Seen};
     use crate::linalg::{Csr, Symmetric};
     use std::sync::Arc;
 
@@ -292,11 +292,10 @@ mod tests {
 
     /// Of these bodies, all of whose unknowns are touched.
     fn of_matrices(matrices: &[Symmetric], rows: &RowSet) -> Metric {
-        let all = |k: &Symmetric| (0..k.order() as u32).collect::<Vec<_>>();
-        let of =
-            |k: &Symmetric| (Stiffness::Matrix(k).diagonal_at(&all(k)), Stiffness::Matrix(k).stiffest(), 1.0);
-        let coupled = || matrices.iter().map(|k| Coupled::of(k.into(), &all(k))).collect();
-        let (trace, none) = (Trace::new(matrices.iter().map(of), &coupled), RowSet::default());
+        let all: Vec<Vec<u32>> = matrices.iter().map(|k| (0..k.order() as u32).collect()).collect();
+        let each = matrices.iter().zip(&all).map(|(k, all)| Local::of_matrix(k.into(), 1.0, all));
+        let bodies = Locals::new(each.map(Seen::Here).collect(), 1);
+        let (trace, none) = (Trace::of(&bodies, |_| 1.0), RowSet::default());
         Metric::of(&trace, [&none, rows, &none], &|_, _| true, 1.0).unwrap()
     }
 

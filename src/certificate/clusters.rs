@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::body::{wire_struct, wire_unit, Local, Name, Question, Stiffness};
+use crate::body::{wire_struct, wire_unit, Local, Locals, Name, Question, Seen, Stiffness};
 use crate::constraints::RowSet;
 use crate::error::Result;
 use crate::linalg::graph::joined;
@@ -17,29 +17,48 @@ const WHAT: &str = "the metric of an island";
 
 /// K where rows touch the bodies of an island, t unknowns: all that the search knows of it.
 pub struct Trace<'a> {
+    bodies: &'a Locals<'a>,
     /// D, 0 without stiffness, t, force / length.
     pub diagonal: Vec<f64>,
     /// The metric of unknowns without stiffness, t, force / length.
     pub without: Vec<f64>,
-    /// The largest D of a body.
+    /// The largest D of every body.
+    pub stiffest: Vec<f64>,
+    pub beside: Option<Beside<'a>>,
+}
+
+/// Other islands, if what is little is so beside them, too.
+#[derive(Clone, Copy)]
+pub struct Beside<'a> {
+    /// The largest D.
     pub stiffest: f64,
-    /// What K couples in every body: asked for only where rows hold something.
-    pub coupled: &'a dyn Fn() -> Result<Vec<Coupled>>,
+    /// `max |K_ij|`, force / length: asked for only where rows hold something.
+    pub strongest: &'a dyn Fn() -> Result<f64>,
 }
 
 impl<'a> Trace<'a> {
-    /// Of every body D where rows touch it, its largest D, and the metric of its unknowns without stiffness.
-    pub fn new<D: AsRef<[f64]>>(
-        bodies: impl IntoIterator<Item = (D, f64, f64)>,
-        coupled: &'a dyn Fn() -> Result<Vec<Coupled>>,
-    ) -> Self {
-        let mut trace = Self { diagonal: Vec::new(), without: Vec::new(), stiffest: 0.0, coupled };
-        for (own, stiffest, without) in bodies {
-            trace.diagonal.extend_from_slice(own.as_ref());
-            trace.without.resize(trace.diagonal.len(), without);
-            trace.stiffest = trace.stiffest.max(stiffest);
+    /// `without`: the metric of unknowns without stiffness in a body.
+    pub fn of(bodies: &'a Locals<'a>, without: impl Fn(&Seen<'a>) -> f64) -> Self {
+        let (mut diagonal, mut all) = (Vec::new(), Vec::new());
+        for body in bodies.iter() {
+            diagonal.extend_from_slice(&body.diagonal());
+            all.resize(diagonal.len(), without(body));
         }
-        trace
+        let stiffest = bodies.iter().map(Seen::stiffest).collect();
+        Self { bodies, diagonal, without: all, stiffest, beside: None }
+    }
+
+    pub(super) fn most(&self) -> f64 {
+        let beside = self.beside.map_or(0.0, |others| others.stiffest);
+        self.stiffest.iter().copied().fold(beside, f64::max)
+    }
+
+    pub(super) fn clusters(&self, rows: [&RowSet; 3]) -> Result<Clusters> {
+        let mut clusters = Clusters::of(self.bodies.ask(|_| Couple, ())?, rows)?;
+        if let Some(others) = self.beside {
+            clusters.ground = clusters.ground.max((others.strongest)()?);
+        }
+        Ok(clusters)
     }
 }
 
@@ -77,12 +96,7 @@ impl Coupled {
         self.strongest
     }
 
-    /// Beside bodies with this one.
-    pub fn beside(self, strongest: f64) -> Self {
-        Self { strongest: self.strongest.max(strongest), ..self }
-    }
-
-    pub fn of(k: Stiffness, touched: &[u32]) -> Result<Self> {
+    fn of(k: Stiffness, touched: &[u32]) -> Result<Self> {
         let (mut pairs, mut strongest) = (Vec::new(), 0.0f64);
         let couple = |i: usize, j: usize, v: f64| {
             strongest = if i == j { strongest } else { strongest.max(v.abs()) };

@@ -1,8 +1,8 @@
 //! What all entries need: the rows of the island with the forces on them, values at the unknowns that rows touch, and the bodies.
 
-use crate::body::{Kept, Seen};
+use crate::body::Kept;
 use crate::certificate::carried::{Metric, Search};
-use crate::certificate::clusters::{Couple, Trace};
+use crate::certificate::clusters::Trace;
 use crate::certificate::part::{Felt, Fit, Fitted, Told};
 use crate::certificate::{Candidate, Data};
 use crate::constraints::{row_scales, RowKind, RowSet};
@@ -41,13 +41,11 @@ pub(super) struct AtRows {
 impl<'a> Field<'a> {
     /// With what the bodies keep of it.
     pub fn new(data: &'a Data<'a>, answer: Candidate<'a>) -> Result<(Self, Kept<Felt>)> {
-        let of = |body: &Seen<'a>| (body.diagonal(), body.stiffest(), data.without(body));
-        let all: Vec<_> = data.bodies.iter().map(of).collect();
-        let largest =
-            all.iter().map(|(_, stiffest, without)| if *stiffest > 0.0 { *stiffest } else { *without });
+        let trace = Trace::of(&data.bodies, |body| data.without(body));
+        let stiffest = data.bodies.iter().zip(&trace.stiffest);
+        let largest = stiffest.map(|(body, most)| if *most > 0.0 { *most } else { data.without(body) });
         let unit = power_of_two_below(largest.fold(0.0, f64::max));
-        let coupled = || data.bodies.ask(|_| Couple, ());
-        let at = AtRows::new(data, answer, &Trace::new(all, &coupled), unit)?;
+        let at = AtRows::new(data, answer, &trace, unit)?;
         let told = |p: usize| {
             let range = data.touched.range(p);
             let told = Told {

@@ -32,7 +32,7 @@ use crate::platform::memory::zeros;
 
 pub use crate::linalg::vector::NOISE;
 pub use carried::{led, Metric};
-pub use clusters::{Couple, Coupled, Trace};
+pub use clusters::{Beside, Couple, Coupled, Trace};
 use deformation::{free_motions, Deformation};
 use energy::Energies;
 pub use entry::{Certificate, Entry};

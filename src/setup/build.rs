@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::{Away, InIsland, Pilots, Stiffness};
-use crate::certificate::{Coupled, Metric, Trace};
+use crate::body::{Away, InIsland, Local, Pilots, Seen};
+use crate::certificate::{Metric, Trace};
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual, Form};
 use crate::error::{Error, Kind, Result};
@@ -252,25 +252,15 @@ fn ratio_of_units(model: &SolvedModel, island: &Island, body: usize) -> f64 {
 /// `D~ / 2^p` of an island, where rows touch and over all unknowns; for dofs without stiffness D is that of the stiffest dof of their
 /// body.
 fn metric(model: &SolvedModel, island: &Island) -> Result<(Metric, ByBody)> {
-    let of_body = |&p: &usize| {
-        let body = &model.bodies[p].body;
-        Some((body.k()?, body.without(island.unit)))
-    };
-    let bodies: Vec<_> = island.bodies.iter().filter_map(of_body).collect();
-    let touched = &island.touched;
-    let each =
-        || bodies.iter().enumerate().map(|(k, (stiffness, without))| (stiffness, *without, touched.on(k)));
-    let of =
-        |(k, without, touched): (&Stiffness, f64, &[u32])| (k.diagonal_at(touched), k.stiffest(), without);
-    let coupled = || each().map(|(k, _, touched)| Coupled::of(*k, touched)).collect();
-    let trace = Trace::new(each().map(of), &coupled);
+    let bodies = island.matrices(model);
     let rows = RowKind::ALL.map(|kind| &island.members(kind).rows);
-    let at_rows = Metric::of(&trace, rows, &|_, _| true, island.unit)?;
-    let everywhere = |(k, without, _): (&Stiffness, f64, _)| -> Vec<f64> {
-        (0..k.order()).map(|i| k.metric(i, without) / island.unit).collect()
+    let at_rows = Metric::of(&Trace::of(&bodies, Seen::unit), rows, &|_, _| true, island.unit)?;
+    let everywhere = |body: &Local| -> Vec<f64> {
+        (0..body.order()).map(|i| body.stiffness.metric(i, body.unit) / island.unit).collect()
     };
-    let mut all = ByBody::from_each(&island.ranges, each().map(everywhere), "the metric of an island")?;
-    touched.set(&at_rows.values, &mut all);
+    let each = bodies.iter().filter_map(|body| body.here().ok()).map(everywhere);
+    let mut all = ByBody::from_each(&island.ranges, each, "the metric of an island")?;
+    island.touched.set(&at_rows.values, &mut all);
     Ok((at_rows, all))
 }
 

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::body::{Local, Locals, Seen};
 use crate::certificate::{Certificate, Entry};
 use crate::constraints::{FrictionNode, RowKind, RowSet, Taken, Touched};
 use crate::error::Result;
@@ -58,6 +59,15 @@ impl Island {
 
     pub fn unknowns(&self) -> usize {
         self.ranges.last().map_or(0, |range| range.end)
+    }
+
+    /// K of its bodies, of a model that has them all here.
+    pub(super) fn matrices<'a>(&'a self, model: &'a SolvedModel) -> Locals<'a> {
+        let local = |(k, &p): (usize, &usize)| {
+            let body = &model.bodies[p].body;
+            Some(Seen::Here(Local::of_matrix(body.k()?, body.without(self.unit), self.touched.on(k))))
+        };
+        Locals::new(self.bodies.iter().enumerate().filter_map(local).collect(), 1)
     }
 
     pub fn members(&self, kind: RowKind) -> &Members {

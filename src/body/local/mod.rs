@@ -84,6 +84,12 @@ pub struct Heading {
 wire_struct!(Heading { body, kept, from, given });
 
 impl<'a> Local<'a> {
+    /// A body of which only K is asked.
+    pub fn of_matrix(stiffness: Stiffness<'a>, unit: f64, touched: &'a [u32]) -> Self {
+        const NONE: &Matrix = &Matrix { rows: 0, cols: 0, data: Vec::new() };
+        Self { stiffness, null_space: NONE, soft: false, unit, grounded: &[], touched, dual: None }
+    }
+
     pub fn order(&self) -> usize {
         self.stiffness.order()
     }

@@ -4,7 +4,7 @@ use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
 
 use crate::body::Seen;
-use crate::certificate::{led, Couple, Trace, NOISE};
+use crate::certificate::{led, Trace, NOISE};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::twofold::Twofold;
@@ -161,9 +161,7 @@ impl<'a> Contradictions<'a> {
             return Ok(metric);
         }
         let (bodies, island) = (self.case.locals()?, self.case.island());
-        let of = |body: &Seen<'a>| (body.diagonal(), body.stiffest(), body.unit());
-        let coupled = || bodies.ask(|_| Couple, ());
-        let trace = Trace::new(bodies.iter().map(of), &coupled);
+        let trace = Trace::of(&bodies, Seen::unit);
         let rows = RowKind::ALL.map(|kind| &island.members(kind).rows);
         let metric = led(&trace, rows, &|_, _| true, island.unit)?;
         Ok(self.metric.get_or_init(|| metric))
