@@ -2,7 +2,7 @@
 //! operators are not included: each is reserved when its size is known.
 
 use crate::error::Result;
-use crate::model::{SolvedModel, PER_ENTRY};
+use crate::model::{GivenBody, SolvedModel, PER_ENTRY};
 use crate::platform::memory::{self, Headroom, PRODUCTS, SMALL_MATRICES};
 use crate::setup::prepared::Prepared;
 
@@ -21,7 +21,9 @@ impl Prepared {
     /// Room for setup, solve and check while the result is kept.
     pub fn working_headroom(&self, model: &SolvedModel) -> Result<Headroom> {
         let rows = model.contact.len() + model.equalities.len();
-        let dofs = model.sizes().dofs;
+        // a body without stiffness will be refused, so its size does not matter; parts have theirs, here or on another rank
+        let counts = |given: &&GivenBody| model.parts.is_some() || given.body.k().is_some();
+        let dofs: usize = model.bodies.iter().filter(counts).map(|given| given.body.order).sum();
         let entries = model.contact.matrix.col.len() + model.equalities.matrix.col.len();
         let modes_of = |p: usize| self.modes(model, p);
         let modes: usize = (0..model.bodies.len()).map(modes_of).sum();
