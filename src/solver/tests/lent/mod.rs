@@ -45,16 +45,21 @@ fn chains(stiffness: &[f64], lending: Option<Lending>) -> Problem {
 }
 
 fn set(problem: &mut Problem, body: usize, k: f64) {
-    let ground = if body == 0 { k } else { 0.0 };
+    set_chains(problem, body, &[k], body == 0);
+}
+
+/// K of a body that consists of chains, the first of them held if `held`.
+fn set_chains(problem: &mut Problem, body: usize, stiffness: &[f64], held: bool) {
     let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
-    for i in 0..N {
-        if i > 0 {
+    for i in 0..N * stiffness.len() {
+        let (k, at) = (stiffness[i / N], i % N);
+        if at > 0 {
             col.push(i as i64 - 1);
             val.push(-k);
         }
         col.push(i as i64);
-        let inside = if i == 0 || i + 1 == N { k } else { 2.0 * k };
-        val.push(inside + if i == 0 { ground } else { 0.0 });
+        let is_free_end = (at == 0 && !(held && i == 0)) || at + 1 == N;
+        val.push(if is_free_end { k } else { 2.0 * k });
         ptr.push(col.len());
     }
     let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };

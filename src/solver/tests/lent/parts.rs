@@ -1,35 +1,19 @@
 //! Connected parts of one K lent to other ranks.
 
 use crate::body::{Lending, Name};
-use crate::solver::tests::lent::{served, solved, N};
-use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};
+use crate::solver::tests::lent::{served, set_chains, solved, N};
+use crate::solver::{Problem, RowKind, RowsInput};
 
 /// Chains of these springs in one K, the first held, each pushed to the one before.
 fn chains_in_one(stiffness: &[f64], lending: Option<Lending>) -> Problem {
     let mut problem = Problem::new();
     problem.prepared.lending = lending;
     let body = problem.add_body(N * stiffness.len()).unwrap();
-    set_all(&mut problem, stiffness);
+    set_chains(&mut problem, body, stiffness, true);
     let f: Vec<f64> = (0..N * stiffness.len()).map(|i| if i % N == N - 1 { -1.0 } else { 0.125 }).collect();
     problem.set_load(body, &f).unwrap();
     (1..stiffness.len()).for_each(|p| touch(&mut problem, [N * p - 1, N * p], 0.1));
     problem
-}
-
-fn set_all(problem: &mut Problem, stiffness: &[f64]) {
-    let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
-    for i in 0..N * stiffness.len() {
-        let k = stiffness[i / N];
-        if i % N > 0 {
-            col.push(i as i64 - 1);
-            val.push(-k);
-        }
-        col.push(i as i64);
-        val.push(if i > 0 && (i % N == 0 || i % N + 1 == N) { k } else { 2.0 * k });
-        ptr.push(col.len());
-    }
-    let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
-    problem.set_stiffness(0, input).unwrap();
 }
 
 fn touch(problem: &mut Problem, [i, j]: [usize; 2], gap: f64) {
@@ -61,7 +45,7 @@ fn a_lent_part_of_a_matrix_has_no_copy_of_it_on_rank_0() {
     agree(|problem| problem.set_load(0, &[-0.5; 5 * N]).unwrap(), &mut lent);
     agree(|problem| touch(problem, [2, N + 2], 0.05), &mut lent);
     assert_eq!((here(&lent), served.asked(Name::Factorise)), (at_first.to_vec(), factorised), "new rows");
-    agree(|problem| set_all(problem, &[4.0, 3.0, 2.0, 8.0, 5.0]), &mut lent);
+    agree(|problem| set_chains(problem, 0, &[4.0, 3.0, 2.0, 8.0, 5.0], true), &mut lent);
     assert_eq!(here(&lent), at_first, "new values");
     served.leader.end().unwrap();
     agree(|problem| problem.set_load(0, &[-0.25; 5 * N]).unwrap(), &mut lent);
