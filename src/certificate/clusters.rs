@@ -22,12 +22,12 @@ pub struct Trace<'a> {
     pub diagonal: Vec<f64>,
     /// The metric of unknowns without stiffness, t, force / length.
     pub without: Vec<f64>,
-    /// The largest D of every body.
+    /// The largest D of every body; empty beside other islands.
     pub stiffest: Vec<f64>,
-    pub beside: Option<Beside<'a>>,
+    beside: Option<Beside<'a>>,
 }
 
-/// Other islands, if what is little is so beside them, too.
+/// All islands, if what is little is so beside all of them.
 #[derive(Clone, Copy)]
 pub struct Beside<'a> {
     /// The largest D.
@@ -39,13 +39,22 @@ pub struct Beside<'a> {
 impl<'a> Trace<'a> {
     /// `without`: the metric of unknowns without stiffness in a body.
     pub fn of(bodies: &'a Locals<'a>, without: impl Fn(&Seen<'a>) -> f64) -> Self {
+        let stiffest = bodies.iter().map(Seen::stiffest).collect();
+        Self { stiffest, ..Self::at_rows(bodies, without) }
+    }
+
+    /// As `of`, beside all islands.
+    pub fn beside(all: Beside<'a>, bodies: &'a Locals<'a>, without: impl Fn(&Seen<'a>) -> f64) -> Self {
+        Self { beside: Some(all), ..Self::at_rows(bodies, without) }
+    }
+
+    fn at_rows(bodies: &'a Locals<'a>, without: impl Fn(&Seen<'a>) -> f64) -> Self {
         let (mut diagonal, mut all) = (Vec::new(), Vec::new());
         for body in bodies.iter() {
             diagonal.extend_from_slice(&body.diagonal());
             all.resize(diagonal.len(), without(body));
         }
-        let stiffest = bodies.iter().map(Seen::stiffest).collect();
-        Self { bodies, diagonal, without: all, stiffest, beside: None }
+        Self { bodies, diagonal, without: all, stiffest: Vec::new(), beside: None }
     }
 
     pub(super) fn most(&self) -> f64 {

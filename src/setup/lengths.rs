@@ -38,8 +38,11 @@ fn lengths<'a, 'b>(
     let beside = (count > 1).then_some(Beside { stiffest, strongest: &strongest });
     for k in 0..count {
         let (island, bodies) = of(k)?;
-        let mut trace = Trace::of(&bodies, |_| f64::INFINITY);
-        trace.beside = beside;
+        let without = |_: &Seen| f64::INFINITY;
+        let trace = match beside {
+            Some(all) => Trace::beside(all, &bodies, without),
+            None => Trace::of(&bodies, without),
+        };
         let held = led(&trace, RowKind::ALL.map(|kind| &island.members(kind).rows), &|_, _| true, 1.0)?;
         let way = |at: usize| Way {
             load: loads(island.bodies[at]).map(Arc::from),
