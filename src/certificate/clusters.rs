@@ -94,7 +94,7 @@ impl Question for Couple {
     type Kept = ();
     type Given = ();
 
-    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<Coupled> {
+    fn answer(self, body: &Local, _: &mut (), _: ()) -> Result<Coupled> {
         Coupled::of(body.stiffness, body.touched)
     }
 }

@@ -21,7 +21,7 @@ impl Question for Way {
     type Kept = ();
     type Given = ();
 
-    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<f64> {
+    fn answer(self, body: &Local, _: &mut (), _: ()) -> Result<f64> {
         let Some(load) = &self.load else { return Ok(0.0) };
         let mut at_rows = body.touched.iter().zip(&self.held).peekable();
         let held = |j: usize| match at_rows.next_if(|(dof, _)| **dof as usize == j) {

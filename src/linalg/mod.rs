@@ -64,7 +64,7 @@ pub trait Operator: Sync {
 }
 
 /// A symmetric matrix with access to blocks of its entries.
-pub trait Entries {
+pub trait Entries: Sync {
     /// Adds the lower triangle of `A_FF` to `block`, n x n; F = `rows`, n rows, ascending.
     fn add_block(&self, rows: &[usize], block: &mut Matrix) -> Result<()>;
 }

@@ -55,6 +55,14 @@ impl SolvedModel {
         move |body| self.bodies[body].body.load.as_deref().filter(|load| norm_max(load) > least)
     }
 
+    /// Some row demands a motion, or has no entries.
+    pub fn may_contradict(&self) -> bool {
+        [RowKind::Inequality, RowKind::Equality].into_iter().any(|kind| {
+            let rows = self.rows(kind);
+            (0..rows.len()).any(|i| demands(kind, rows.rhs[i]) || rows.is_empty_row(i))
+        })
+    }
+
     /// `by_loads`: of every body `sum_j |f_j| / D^_j`.
     pub fn lengths(&self, by_loads: &[f64]) -> Result<Lengths<'_>> {
         let of_body = |(body, by_load): (&Body, &f64)| {

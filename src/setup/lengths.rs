@@ -59,9 +59,12 @@ pub(super) fn first_lengths<'a>(model: &'a SolvedModel, islands: &[Island]) -> R
 }
 
 impl Prepared {
-    /// The lengths of a model that is set up.
+    /// The lengths of a model that is set up; 0 if nothing depends on them.
     pub fn lengths<'a>(&self, model: &'a SolvedModel) -> Result<Lengths<'a>> {
         let islands = &self.done(model)?.islands;
+        if !model.may_contradict() && !islands.iter().any(|ready| ready.rows.some_are_parallel()) {
+            return model.lengths(&vec![0.0; model.bodies.len()]);
+        }
         lengths(model, islands.len(), &|k| Ok((&*islands[k].island, self.locals(model, &islands[k])?)))
     }
 }

@@ -145,6 +145,11 @@ impl DualRows {
         self.scaling.grouping.leaders.len()
     }
 
+    /// Some group has several rows.
+    pub fn some_are_parallel(&self) -> bool {
+        self.groups() < self.scaling.scale.len()
+    }
+
     /// Kind of the multiplier of a group.
     pub fn kind(&self, group: usize) -> RowKind {
         self.scaling.grouping.kind(group, self.contact, self.tangential)

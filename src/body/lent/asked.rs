@@ -11,7 +11,7 @@ use crate::ranks::{message, Wire};
 /// A question with its data, of any kind.
 pub trait Answering: Send {
     /// The answer as a message, an error too.
-    fn answered(&self, store: &Store) -> Vec<u8>;
+    fn answered(self: Box<Self>, store: &Store) -> Vec<u8>;
 }
 
 struct Asked<Q> {
@@ -25,15 +25,15 @@ pub fn asked<Q: Question>(from: &mut &[u8]) -> Result<Box<dyn Answering>> {
 }
 
 impl<Q: Question> Asked<Q> {
-    fn answer(&self, store: &Store) -> Result<Q::Answer> {
-        let Heading { body, kept, from, given } = &self.heading;
-        let member = store.find::<Member>(*body)?;
+    fn answer(self, store: &Store) -> Result<Q::Answer> {
+        let Self { heading: Heading { body, kept, from, given }, question } = self;
+        let member = store.find::<Member>(body)?;
         let answer = |kept: &mut Q::Kept| {
-            Q::Given::read(store, given, |given| self.question.answer(&member.local(), kept, given))
+            Q::Given::read(store, &given, |given| question.answer(&member.local(), kept, given))
         };
-        let Some(name) = *kept else { return answer(&mut Q::Kept::default()) };
+        let Some(name) = kept else { return answer(&mut Q::Kept::default()) };
         let first = match from {
-            Some(from) => Some(read(&*store.find::<RwLock<Q::Kept>>(*from)?)),
+            Some(from) => Some(read(&*store.find::<RwLock<Q::Kept>>(from)?)),
             None => store.find::<RwLock<Q::Kept>>(name).is_err().then(Q::Kept::default),
         };
         if let Some(mut new) = first {
@@ -52,7 +52,7 @@ fn read<T: Clone>(of: &RwLock<T>) -> T {
 }
 
 impl<Q: Question> Answering for Asked<Q> {
-    fn answered(&self, store: &Store) -> Vec<u8> {
+    fn answered(self: Box<Self>, store: &Store) -> Vec<u8> {
         message(&self.answer(store))
     }
 }

@@ -21,8 +21,8 @@ impl Question for Put {
     type Kept = Vec<f64>;
     type Given = ();
 
-    fn answer(&self, _: &Local, v: &mut Vec<f64>, _: ()) -> Result<()> {
-        v.clone_from(&self.v);
+    fn answer(self, _: &Local, v: &mut Vec<f64>, _: ()) -> Result<()> {
+        *v = self.v;
         Ok(())
     }
 }
@@ -38,7 +38,7 @@ impl Question for Bring {
     type Kept = ();
     type Given = (Vec<f64>,);
 
-    fn answer(&self, _: &Local, _: &mut (), v: &Vec<f64>) -> Result<Vec<f64>> {
+    fn answer(self, _: &Local, _: &mut (), v: &Vec<f64>) -> Result<Vec<f64>> {
         copied(v, "a vector over the unknowns of a body")
     }
 }
@@ -54,7 +54,7 @@ impl Question for Section {
     type Kept = ();
     type Given = ();
 
-    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<Self::Answer> {
+    fn answer(self, body: &Local, _: &mut (), _: ()) -> Result<Self::Answer> {
         let Stiffness::Matrix(k) = body.stiffness else { return Ok(None) };
         Ok(Some((k.clone(), copied(body.dual()?.metric, "the metric of a body")?)))
     }

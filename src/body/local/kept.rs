@@ -56,6 +56,13 @@ impl<T> Kept<T> {
         }
     }
 
+    pub(super) fn here_mut(&mut self, p: usize) -> Result<&mut T> {
+        match &mut self.of[p] {
+            OfBody::Here(own) => Ok(own),
+            OfBody::Elsewhere(_) => Err(not_here()),
+        }
+    }
+
     /// Its name, if the body is elsewhere.
     pub(super) fn token(&self, p: usize) -> Result<&Arc<Token>> {
         match &self.of[p] {

@@ -59,14 +59,14 @@ impl<'a> Locals<'a> {
     /// Asks about every body; the answers in their order, or the first error.
     pub fn ask<Q: Question<Kept = ()>>(
         &self,
-        question: impl Fn(usize) -> Q,
+        question: impl Fn(usize) -> Q + Sync,
         given: <Q::Given as Given>::All<'_>,
     ) -> Result<Vec<Q::Answer>> {
         let heading = |p: usize, body| {
             let given = Q::Given::names(given, p)?;
             Ok(Heading { body, kept: None, from: None, given })
         };
-        let own = |p: usize, q: &Q| {
+        let own = |p: usize, q: Q| {
             let answer = q.answer(self.bodies[p].here()?, &mut (), Q::Given::of(given, p)?);
             answer.map(answered::<Q>)
         };
@@ -76,7 +76,7 @@ impl<'a> Locals<'a> {
     /// Asks about every body what makes something that is kept.
     pub fn make<Q: Question>(
         &self,
-        question: impl Fn(usize) -> Q,
+        question: impl Fn(usize) -> Q + Sync,
         given: <Q::Given as Given>::All<'_>,
     ) -> Result<(Vec<Q::Answer>, Kept<Q::Kept>)> {
         let nothing = |body: &Seen| match body.away() {
@@ -91,7 +91,7 @@ impl<'a> Locals<'a> {
     /// Asks about every body what changes what is kept.
     pub fn change<Q: Question>(
         &self,
-        question: impl Fn(usize) -> Q,
+        question: impl Fn(usize) -> Q + Sync,
         kept: &mut Kept<Q::Kept>,
         given: <Q::Given as Given>::All<'_>,
     ) -> Result<Vec<Q::Answer>> {
@@ -111,8 +111,15 @@ impl<'a> Locals<'a> {
             let (kept, from) = names[p];
             Ok(Heading { body, kept, from, given })
         };
+        if self.threads == 1 && !self.some_away {
+            let own = |(p, body): (usize, &Seen)| {
+                let answer = question(p).answer(body.here()?, kept.here_mut(p)?, Q::Given::of(given, p)?);
+                answer.map(answered::<Q>)
+            };
+            return stopwatch::aside(|| self.bodies.iter().enumerate().map(own).collect());
+        }
         let cells = kept.cells();
-        let own = |p: usize, q: &Q| {
+        let own = |p: usize, q: Q| {
             let given = Q::Given::of(given, p)?;
             cells[p].change(|kept| q.answer(self.bodies[p].here()?, kept, given).map(answered::<Q>))
         };
@@ -122,12 +129,12 @@ impl<'a> Locals<'a> {
     /// The bodies that are elsewhere are asked about first, by one request to each rank, and answered last.
     fn each<Q: Question>(
         &self,
-        question: impl Fn(usize) -> Q,
+        question: impl Fn(usize) -> Q + Sync,
         heading: impl Fn(usize, u64) -> Result<Heading>,
-        own: impl Fn(usize, &Q) -> Result<Q::Answer> + Sync,
+        own: impl Fn(usize, Q) -> Result<Q::Answer> + Sync,
     ) -> Result<Vec<Q::Answer>> {
         let away = self.some_away.then(|| self.bodies.iter().find_map(Seen::away)).flatten();
-        let Some(Away { name: first, .. }) = away else { return self.here(question, own) };
+        let Some(Away { name: first, .. }) = away else { return self.here(|p| own(p, question(p))) };
         let mut asked = Vec::new();
         for (p, body) in self.bodies.iter().enumerate() {
             let Some(Away { name: token, .. }) = body.away() else { continue };
@@ -135,26 +142,19 @@ impl<'a> Locals<'a> {
             asked.push((p, Asking::new(token.rank, Q::NAME, (heading, question(p)))));
         }
         let owed = ask(&first.ranks, asked)?;
-        let question = |p: usize| self.bodies[p].away().is_none().then(|| question(p));
-        let mut all = self.here(question, |p, q| Ok(q.as_ref().map(|q| own(p, q))))?;
+        let is_here = |p: usize| self.bodies[p].away().is_none();
+        let mut all = self.here(|p| Ok(is_here(p).then(|| own(p, question(p)))))?;
         for (p, answer) in owed.answers::<Q::Answer>()? {
             all[p] = Some(answer.map(answered::<Q>));
         }
         all.into_iter().map(|of| of.ok_or_else(crate::ranks::damaged)?).collect()
     }
 
-    fn here<Q: Send + Sync, T: Send>(
-        &self,
-        question: impl Fn(usize) -> Q,
-        own: impl Fn(usize, &Q) -> Result<T> + Sync,
-    ) -> Result<Vec<T>> {
-        if self.threads == 1 {
-            return stopwatch::aside(|| (0..self.bodies.len()).map(|p| own(p, &question(p))).collect());
-        }
-        let questions: Vec<Q> = (0..self.bodies.len()).map(question).collect();
+    fn here<T: Send>(&self, own: impl Fn(usize) -> Result<T> + Sync) -> Result<Vec<T>> {
         let on_caller = |p: usize| self.bodies[p].here().is_ok_and(Local::on_caller);
-        stopwatch::aside(|| {
-            threads::run_apart(self.threads, questions.len(), on_caller, |p| own(p, &questions[p]))
+        stopwatch::aside(|| match self.threads {
+            1 => (0..self.bodies.len()).map(own).collect(),
+            threads => threads::run_apart(threads, self.bodies.len(), on_caller, own),
         })
     }
 

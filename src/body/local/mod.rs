@@ -65,7 +65,7 @@ pub trait Question: Wire + Send + Sync + 'static {
     type Given: Given;
 
     fn answer(
-        &self,
+        self,
         body: &Local,
         kept: &mut Self::Kept,
         given: <Self::Given as Given>::Of<'_>,

@@ -76,9 +76,9 @@ impl Question for Measure {
     type Kept = ();
     type Given = (Felt, Vec<f64>, Load);
 
-    fn answer(&self, body: &Local, _: &mut (), given: (&Felt, &Vec<f64>, &Load)) -> Result<Measured> {
+    fn answer(self, body: &Local, _: &mut (), given: (&Felt, &Vec<f64>, &Load)) -> Result<Measured> {
         let (felt, u, load) = given;
-        Part { body, felt, u, load }.measured(self)
+        Part { body, felt, u, load }.measured(&self)
     }
 }
 

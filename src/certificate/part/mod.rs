@@ -115,8 +115,8 @@ impl Question for Fit {
     type Kept = Felt;
     type Given = (Vec<f64>, Load);
 
-    fn answer(&self, body: &Local, felt: &mut Felt, (u, load): (&Vec<f64>, &Load)) -> Result<Fitted> {
-        *felt = Felt::of(body, self.told.clone())?;
+    fn answer(self, body: &Local, felt: &mut Felt, (u, load): (&Vec<f64>, &Load)) -> Result<Fitted> {
+        *felt = Felt::of(body, self.told)?;
         let part = Part { body, felt, u, load };
         let (sizes, amplitudes) = (part.sizes(), part.amplitudes());
         let ((motions, unit), at) = (part.motions(), body.touched);
@@ -142,7 +142,7 @@ impl Question for Largest {
     type Kept = ();
     type Given = (Vec<f64>, Load);
 
-    fn answer(&self, _: &Local, _: &mut (), (u, load): (&Vec<f64>, &Load)) -> Result<(f64, f64)> {
+    fn answer(self, _: &Local, _: &mut (), (u, load): (&Vec<f64>, &Load)) -> Result<(f64, f64)> {
         Ok((norm_max(u), norm_max(load.entries())))
     }
 }
@@ -156,7 +156,7 @@ impl Question for LoadOf {
     type Kept = ();
     type Given = (Load,);
 
-    fn answer(&self, body: &Local, _: &mut (), load: &Load) -> Result<Vec<f64>> {
+    fn answer(self, body: &Local, _: &mut (), load: &Load) -> Result<Vec<f64>> {
         load.everywhere(body.order())
     }
 }
@@ -172,7 +172,7 @@ impl Question for SizeOfLoad {
     type Kept = ();
     type Given = ();
 
-    fn answer(&self, body: &Local, _: &mut (), _: ()) -> Result<LoadOfWhole> {
+    fn answer(self, body: &Local, _: &mut (), _: ()) -> Result<LoadOfWhole> {
         let dual = body.dual()?;
         let (mut own, mut largest) = (Vec::new(), 0.0);
         for (i, f) in acting(self.load.as_deref().unwrap_or_default(), body.grounded) {
@@ -194,8 +194,8 @@ impl Question for Lend {
     type Kept = Load;
     type Given = ();
 
-    fn answer(&self, _: &Local, load: &mut Load, _: ()) -> Result<()> {
-        load.clone_from(&self.load);
+    fn answer(self, _: &Local, load: &mut Load, _: ()) -> Result<()> {
+        *load = self.load;
         Ok(())
     }
 }

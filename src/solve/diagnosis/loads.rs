@@ -147,7 +147,7 @@ impl Unheld {
         }
         let (ready, island, bodies) = (case.ready, case.island(), case.locals()?);
         let worst = self.cluster[self.body];
-        let moves: [&dyn Fn(usize) -> bool; 3] =
+        let moves: [&(dyn Fn(usize) -> bool + Sync); 3] =
             [&|p| self.cluster[p] == worst, &|p| self.shares[p] > self.accuracy.marginal(), &|p| {
                 self.shares[p] > 0.0
             }];

@@ -40,7 +40,7 @@ impl Question for Begin {
     type Kept = Point;
     type Given = (Vec<f64>,);
 
-    fn answer(&self, _: &Local, point: &mut Point, v: &Vec<f64>) -> Result<()> {
+    fn answer(self, _: &Local, point: &mut Point, v: &Vec<f64>) -> Result<()> {
         let zero = zeros(v.len(), WHAT)?;
         point.v = if self.at_rest { zero.clone() } else { copied(v, WHAT)? }.into();
         point.w = zero.into();
@@ -60,7 +60,7 @@ impl Question for Shift {
     type Kept = Point;
     type Given = ();
 
-    fn answer(&self, body: &Local, point: &mut Point, _: ()) -> Result<bool> {
+    fn answer(self, body: &Local, point: &mut Point, _: ()) -> Result<bool> {
         Ok(point.shift(body, &self.a, self.apart)?.0)
     }
 }
@@ -75,7 +75,7 @@ impl Question for Strained {
     type Given = (Vec<f64>, Point);
 
     fn answer(
-        &self,
+        self,
         body: &Local,
         left: &mut Vec<f64>,
         (load, point): (&Vec<f64>, &Point),
@@ -102,7 +102,7 @@ impl Question for Residual {
     type Kept = Vec<f64>;
     type Given = ();
 
-    fn answer(&self, body: &Local, left: &mut Vec<f64>, _: ()) -> Result<OfLoad> {
+    fn answer(self, body: &Local, left: &mut Vec<f64>, _: ()) -> Result<OfLoad> {
         body.set_at_rows(&self.at_rows, left);
         of_load(body, left)
     }
@@ -131,7 +131,7 @@ impl Question for Correct {
     type Kept = Point;
     type Given = (Vec<f64>,);
 
-    fn answer(&self, body: &Local, point: &mut Point, left: &Vec<f64>) -> Result<Corrected> {
+    fn answer(self, body: &Local, point: &mut Point, left: &Vec<f64>) -> Result<Corrected> {
         let mut moved = displaced(body, copied(left, WHAT)?, &self.at_rows)?;
         point.v.add_all(&moved);
         let (apart, motion) = point.shift(body, &self.a, self.apart)?;
@@ -158,7 +158,7 @@ impl Question for Added {
     type Kept = Point;
     type Given = ();
 
-    fn answer(&self, body: &Local, point: &mut Point, _: ()) -> Result<Turned> {
+    fn answer(self, body: &Local, point: &mut Point, _: ()) -> Result<Turned> {
         point.v.add_all(&self.by);
         let (a, length) = (amplitudes(body, &self.by)?, length(body, &self.by)?);
         Ok(Turned { a, at_rows: body.at_rows(&self.by), length })
@@ -174,7 +174,7 @@ impl Question for PointAtRows {
     type Kept = ();
     type Given = (Point,);
 
-    fn answer(&self, body: &Local, _: &mut (), point: &Point) -> Result<Vec<Vec<f64>>> {
+    fn answer(self, body: &Local, _: &mut (), point: &Point) -> Result<Vec<Vec<f64>>> {
         let parts = point.v.parts().into_iter().chain(point.w.parts());
         Ok(parts.map(|part| body.at_rows(part)).collect())
     }
@@ -189,7 +189,7 @@ impl Question for Displacement {
     type Kept = Vec<f64>;
     type Given = (Point,);
 
-    fn answer(&self, body: &Local, u: &mut Vec<f64>, point: &Point) -> Result<Vec<f64>> {
+    fn answer(self, body: &Local, u: &mut Vec<f64>, point: &Point) -> Result<Vec<f64>> {
         *u = point.w.values();
         axpy(1.0, &point.v.values(), u);
         Ok(body.at_rows(u))
@@ -207,7 +207,7 @@ impl Question for Deformation {
     type Kept = Vec<f64>;
     type Given = (Point,);
 
-    fn answer(&self, body: &Local, deformed: &mut Vec<f64>, point: &Point) -> Result<Vec<f64>> {
+    fn answer(self, body: &Local, deformed: &mut Vec<f64>, point: &Point) -> Result<Vec<f64>> {
         *deformed = point.v.values();
         axpy(-1.0, &turn(body, &self.beta)?, deformed);
         Ok(body.at_rows(deformed))

@@ -31,7 +31,7 @@ impl Question for Scale {
     type Kept = Vec<f64>;
     type Given = (Load,);
 
-    fn answer(&self, body: &Local, scaled: &mut Vec<f64>, load: &Load) -> Result<Vec<f64>> {
+    fn answer(self, body: &Local, scaled: &mut Vec<f64>, load: &Load) -> Result<Vec<f64>> {
         *scaled = load.everywhere(body.order())?;
         let unit = body.dual()?.island;
         scaled.iter_mut().for_each(|f| *f /= unit);
@@ -48,7 +48,7 @@ impl Question for FromLoad {
     type Kept = ();
     type Given = (Vec<f64>,);
 
-    fn answer(&self, body: &Local, _: &mut (), load: &Vec<f64>) -> Result<OfLoad> {
+    fn answer(self, body: &Local, _: &mut (), load: &Vec<f64>) -> Result<OfLoad> {
         of_load(body, load)
     }
 }
@@ -62,7 +62,7 @@ impl Question for Loaded {
     type Kept = Load;
     type Given = (Vec<f64>, Load);
 
-    fn answer(&self, body: &Local, load: &mut Load, (scaled, of_host): (&Vec<f64>, &Load)) -> Result<()> {
+    fn answer(self, body: &Local, load: &mut Load, (scaled, of_host): (&Vec<f64>, &Load)) -> Result<()> {
         let unit = body.dual()?.island;
         let own = scaled.iter().map(|f| f * unit).collect();
         *load = Load { own: Some(own), whole: of_host.whole };
@@ -81,7 +81,7 @@ impl Question for Displace {
     type Kept = Vec<f64>;
     type Given = (Vec<f64>,);
 
-    fn answer(&self, body: &Local, moved: &mut Vec<f64>, load: &Vec<f64>) -> Result<Vec<f64>> {
+    fn answer(self, body: &Local, moved: &mut Vec<f64>, load: &Vec<f64>) -> Result<Vec<f64>> {
         *moved = displaced(body, copied(load, WHAT)?, &self.at_rows)?;
         Ok(body.at_rows(moved))
     }
@@ -98,7 +98,7 @@ impl Question for Turn {
     type Kept = Vec<f64>;
     type Given = (Vec<f64>,);
 
-    fn answer(&self, body: &Local, turned: &mut Vec<f64>, v: &Vec<f64>) -> Result<Vec<f64>> {
+    fn answer(self, body: &Local, turned: &mut Vec<f64>, v: &Vec<f64>) -> Result<Vec<f64>> {
         *turned = turn(body, &self.a)?;
         axpy(1.0, v, turned);
         Ok(body.at_rows(turned))
@@ -117,7 +117,7 @@ impl Question for Slide {
     type Kept = Vec<f64>;
     type Given = ();
 
-    fn answer(&self, body: &Local, v: &mut Vec<f64>, _: ()) -> Result<Vec<f64>> {
+    fn answer(self, body: &Local, v: &mut Vec<f64>, _: ()) -> Result<Vec<f64>> {
         *v = displaced(body, zeros(body.order(), WHAT)?, &self.at_rows)?;
         axpy(1.0, &turn(body, &self.a)?, v);
         Ok(body.at_rows(v))

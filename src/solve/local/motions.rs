@@ -29,7 +29,7 @@ impl Question for Rigid {
     type Kept = ();
     type Given = (Vec<f64>,);
 
-    fn answer(&self, body: &Local, _: &mut (), u: &Vec<f64>) -> Result<Vec<f64>> {
+    fn answer(self, body: &Local, _: &mut (), u: &Vec<f64>) -> Result<Vec<f64>> {
         amplitudes(body, u)
     }
 }
@@ -51,7 +51,7 @@ impl Question for Split {
     type Kept = ();
     type Given = (Vec<f64>,);
 
-    fn answer(&self, body: &Local, _: &mut (), u: &Vec<f64>) -> Result<Parted> {
+    fn answer(self, body: &Local, _: &mut (), u: &Vec<f64>) -> Result<Parted> {
         let mut rest = copied(u, WHAT)?;
         let mut amplitudes = vec![0.0; body.null_space.cols];
         for _ in 0..2 {
@@ -88,7 +88,7 @@ impl Question for Along {
     type Kept = Vec<f64>;
     type Given = ();
 
-    fn answer(&self, body: &Local, v: &mut Vec<f64>, _: ()) -> Result<Option<Moved>> {
+    fn answer(self, body: &Local, v: &mut Vec<f64>, _: ()) -> Result<Option<Moved>> {
         let Some(a) = &self.a else { return Ok(None) };
         let dual = body.dual()?;
         *v = turn(body, a)?;
@@ -120,7 +120,7 @@ impl Question for FreeMotions {
     type Kept = Matrix;
     type Given = ();
 
-    fn answer(&self, body: &Local, motions: &mut Matrix, _: ()) -> Result<FreeMotionsAtRows> {
+    fn answer(self, body: &Local, motions: &mut Matrix, _: ()) -> Result<FreeMotionsAtRows> {
         *motions =
             Matrix::from_fn(body.null_space.rows, body.null_space.cols, |i, j| body.null_space.get(i, j))?;
         for j in 0..motions.cols {
@@ -156,7 +156,7 @@ impl Question for Place {
     type Given = (Matrix, Vec<f64>);
 
     fn answer(
-        &self,
+        self,
         body: &Local,
         u: &mut Vec<f64>,
         (motions, deformed): (&Matrix, &Vec<f64>),
@@ -187,7 +187,7 @@ impl Question for Energy {
     type Kept = ();
     type Given = (Vec<f64>,);
 
-    fn answer(&self, body: &Local, _: &mut (), v: &Vec<f64>) -> Result<EnergyOfMotion> {
+    fn answer(self, body: &Local, _: &mut (), v: &Vec<f64>) -> Result<EnergyOfMotion> {
         let unit = body.dual()?.island;
         let (_, of_entries) = body.products(v, WHAT)?;
         let entries = v.iter().zip(of_entries).map(|(v, terms)| v.abs() * terms / unit).sum();
@@ -211,7 +211,7 @@ impl Question for Negate {
     type Kept = Vec<f64>;
     type Given = ();
 
-    fn answer(&self, _: &Local, v: &mut Vec<f64>, _: ()) -> Result<()> {
+    fn answer(self, _: &Local, v: &mut Vec<f64>, _: ()) -> Result<()> {
         v.iter_mut().for_each(|v| *v = -*v);
         Ok(())
     }

@@ -42,7 +42,7 @@ impl Question for Sizes {
     type Kept = ();
     type Given = (Vec<f64>,);
 
-    fn answer(&self, body: &Local, _: &mut (), scaled: &Vec<f64>) -> Result<SizesOfForces> {
+    fn answer(self, body: &Local, _: &mut (), scaled: &Vec<f64>) -> Result<SizesOfForces> {
         let dual = body.dual()?;
         let mut load: Vec<f64> = scaled.iter().map(|f| f * dual.island).collect();
         let mut push = zeros(load.len(), WHAT)?;
@@ -95,7 +95,7 @@ impl Question for Left {
     type Given = (Vec<f64>, Load);
 
     fn answer(
-        &self,
+        self,
         body: &Local,
         unheld: &mut Unheld,
         (scaled, of_host): (&Vec<f64>, &Load),
@@ -126,7 +126,7 @@ impl Question for Take {
     type Kept = Vec<f64>;
     type Given = (Unheld,);
 
-    fn answer(&self, body: &Local, scaled: &mut Vec<f64>, unheld: &Unheld) -> Result<Vec<f64>> {
+    fn answer(self, body: &Local, scaled: &mut Vec<f64>, unheld: &Unheld) -> Result<Vec<f64>> {
         axpy(-1.0, &unheld.load, scaled);
         Ok(body.at_rows(scaled))
     }
@@ -156,7 +156,7 @@ impl Question for Proof {
     type Given = (Vec<f64>, Unheld);
 
     fn answer(
-        &self,
+        self,
         body: &Local,
         v: &mut Vec<f64>,
         (scaled, unheld): (&Vec<f64>, &Unheld),
@@ -182,7 +182,7 @@ impl Question for Work {
     type Kept = ();
     type Given = (Load,);
 
-    fn answer(&self, body: &Local, _: &mut (), of_host: &Load) -> Result<f64> {
+    fn answer(self, body: &Local, _: &mut (), of_host: &Load) -> Result<f64> {
         let dual = body.dual()?;
         let mut load = without_grounded(body, of_host.everywhere(body.order())?);
         let resultants = body.null_space.mul_transposed(&load);

@@ -252,6 +252,7 @@ fn what_is_computed_once_is_neither_sent_nor_made_again() {
     solved(&mut problem).unwrap();
     assert_eq!(made(), first, "a new load");
     assert!(problem.traffic().bytes - bytes < bytes);
+    assert_eq!(served.asked(Name::Way), 0, "no gap demands a motion: none is a difference of lengths");
     set(&mut problem, 0, 8.0);
     solved(&mut problem).unwrap();
     assert_eq!(made()[0], first[0] + 1, "new values of one body");
