@@ -14,7 +14,6 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::NOISE;
 use crate::linalg::{Analysis, Cholesky, Matrix, Multiple};
 use crate::numbers::linalg::DEPENDENT;
-use crate::ranks::{wire_struct, Wire};
 
 /// The plan if the null space is known before the factorisation.
 pub struct Known {
@@ -45,49 +44,6 @@ pub(super) enum Retry {
     Search { tolerance: f64, fixing: Option<Vec<usize>>, floats: Option<usize> },
     /// All motions that were declared soft, also those that K resists like any other, get a column.
     AllSoft(NullSpaceInput),
-}
-
-wire_struct!(Known {
-    k,
-    null_space,
-    error,
-    fixing,
-    given,
-    soft,
-    pilots,
-    rigid,
-    symbolic,
-    doubt,
-    misfit,
-    retry,
-});
-
-impl Wire for Retry {
-    fn put(&self, to: &mut Vec<u8>) {
-        match self {
-            Self::Search { tolerance, fixing, floats } => {
-                true.put(to);
-                tolerance.put(to);
-                fixing.put(to);
-                floats.put(to);
-            }
-            Self::AllSoft(input) => {
-                false.put(to);
-                input.put(to);
-            }
-        }
-    }
-
-    fn take(from: &mut &[u8]) -> Result<Self> {
-        Ok(match bool::take(from)? {
-            true => Self::Search {
-                tolerance: Wire::take(from)?,
-                fixing: Wire::take(from)?,
-                floats: Wire::take(from)?,
-            },
-            false => Self::AllSoft(Wire::take(from)?),
-        })
-    }
 }
 
 impl Known {

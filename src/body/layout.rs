@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::Analysis;
-use crate::ranks::{wire_struct, Wire};
+use crate::ranks::Wire;
 
 /// The input of a symbolic analysis besides the pattern of K. Bodies with the same pattern and layout share one analysis.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -36,5 +36,3 @@ impl Wire for Layout {
         Ok(of(Vec::take(from)?))
     }
 }
-
-wire_struct!(Symbolic { layout, analysis });

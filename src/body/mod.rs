@@ -30,6 +30,7 @@ mod null_space;
 mod part;
 mod pilots;
 mod plan;
+mod planning;
 mod probe;
 mod rigid_modes;
 mod rounded;
@@ -57,7 +58,7 @@ pub use given::Stiffness;
 pub use grounded::grounded;
 pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER};
 pub use layout::{Layout, Symbolic};
-pub use lent::{asked, Answering, Bodies, Lending, Made};
+pub use lent::{asked, Analysis, Answering, Bodies, Lending, Made, NewKplus, PlanAway, Planned};
 #[cfg(feature = "loopback")]
 pub use local::answers;
 pub use local::{Bring, Distributed, Kept, Local, LocalDual, Locals, Put, Question, Section, Seen};
@@ -65,6 +66,7 @@ pub use misfit::Misfit;
 pub use null_space::{Modes, NullSpaceInput};
 pub use pilots::Pilots;
 pub use plan::Plan;
+pub use planning::Planning;
 pub use rigid_modes::Coordinates;
 pub use spectrum::Doubt;
 pub use stiffness::{check_diagonal, check_finite, from_dense, from_sparse, from_split};
@@ -119,6 +121,21 @@ impl Body {
     /// division by it is exact, so powers of two in the host's units do not change any bit of the results.
     pub fn unit(&self) -> f64 {
         power_of_two_below(self.k().map_or(0.0, |k| k.largest_diagonal()))
+    }
+
+    /// The same body without its load, of which the matrix and functions are shared.
+    pub fn without_load(&self) -> Self {
+        let Self { order, stiffness, operator, null_space, coordinates, coordinate_modes, fixing, .. } = self;
+        Self {
+            order: *order,
+            stiffness: stiffness.clone(),
+            operator: operator.clone(),
+            null_space: null_space.clone(),
+            coordinates: coordinates.clone(),
+            coordinate_modes: *coordinate_modes,
+            fixing: fixing.clone(),
+            ..Self::default()
+        }
     }
 
     /// The value used in the metric where `K_ii` is 0: the unit, or `others` if the body has no stiffness.

@@ -18,31 +18,11 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{headroom, PRODUCTS};
 use crate::platform::tally;
-use crate::ranks::Wire;
 
 /// How K+ will be computed.
 pub enum Plan {
     Known(Known),
     Search(Search),
-}
-
-impl Wire for Plan {
-    fn put(&self, to: &mut Vec<u8>) {
-        match self {
-            Self::Known(known) => {
-                true.put(to);
-                known.put(to);
-            }
-            Self::Search(search) => {
-                false.put(to);
-                search.put(to);
-            }
-        }
-    }
-
-    fn take(from: &mut &[u8]) -> Result<Self> {
-        Ok(if bool::take(from)? { Self::Known(Wire::take(from)?) } else { Self::Search(Wire::take(from)?) })
-    }
 }
 
 impl GeneralizedInverse {
@@ -150,6 +130,16 @@ impl Plan {
         }
     }
 
+    /// Takes over the first of these layouts that is suitable, if any.
+    pub fn follow_first<'l>(&mut self, layouts: impl Iterator<Item = &'l Layout>) -> Result<Option<usize>> {
+        for (k, layout) in layouts.enumerate() {
+            if self.follow(layout)? {
+                return Ok(Some(k));
+            }
+        }
+        Ok(None)
+    }
+
     /// The input of the analysis besides the pattern of K.
     pub fn layout(&self) -> Arc<Layout> {
         match self {
@@ -165,6 +155,11 @@ impl Plan {
             Self::Search(search) => search.analyse()?,
         };
         Ok(Arc::new(Symbolic { layout: self.layout(), analysis }))
+    }
+
+    /// The null space is known.
+    pub fn is_known(&self) -> bool {
+        matches!(self, Self::Known(_))
     }
 
     /// K, of the same bits wherever it is kept.

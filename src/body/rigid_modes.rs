@@ -5,6 +5,7 @@ use crate::linalg::vector::{first_non_finite, norm};
 use crate::linalg::{Matrix, SpdSolver};
 use crate::numbers::body::RIGID;
 use crate::platform::memory::{copied, headroom, reserved};
+use crate::ranks::wire_struct;
 
 /// Direction and position of each dof.
 #[derive(Debug, Clone)]
@@ -14,6 +15,8 @@ pub struct Coordinates {
     /// Position, length; coordinates beyond the given dimension are 0.
     place: Vec<[f64; 3]>,
 }
+
+wire_struct!(Coordinates { direction, place });
 
 /// Bytes of the modes, per dof.
 const PER_DOF: usize = 48;

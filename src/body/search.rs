@@ -27,7 +27,6 @@ use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
 use crate::numbers::body::MOST_ROUNDING;
 use crate::numbers::rounding;
 use crate::platform::memory::{headroom, PRODUCTS};
-use crate::ranks::wire_struct;
 
 /// Number of dofs eliminated last, in the first attempt.
 const LAST: usize = 24;
@@ -56,8 +55,6 @@ pub struct Search {
     pub(super) layout: Arc<Layout>,
     pub(super) symbolic: Option<Arc<Symbolic>>,
 }
-
-wire_struct!(Search { k, tolerance, fixing, last, count, digits, few, pilots, misfit, layout, symbolic });
 
 /// An attempt ends with K+, or with a dof that t must include.
 enum Attempt {

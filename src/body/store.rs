@@ -13,7 +13,11 @@ pub struct Store {
 
 impl Store {
     pub fn keep<T: Any + Send + Sync>(&self, name: u64, value: T) {
-        self.all().insert(name, Arc::new(value));
+        self.share(name, Arc::new(value));
+    }
+
+    pub fn share<T: Any + Send + Sync>(&self, name: u64, value: Arc<T>) {
+        self.all().insert(name, value);
     }
 
     pub fn find<T: Any + Send + Sync>(&self, name: u64) -> Result<Arc<T>> {

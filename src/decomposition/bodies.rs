@@ -92,20 +92,9 @@ struct Split<'a> {
 impl Split<'_> {
     /// A body that is its only part: its matrix and functions are shared, not copied.
     fn whole(&self) -> Result<MadePart> {
-        let Body { order, stiffness, operator, null_space, coordinates, coordinate_modes, fixing, .. } =
-            &self.given.body;
-        let own = Body {
-            order: *order,
-            stiffness: stiffness.clone(),
-            operator: operator.clone(),
-            null_space: null_space.clone(),
-            coordinates: coordinates.clone(),
-            coordinate_modes: *coordinate_modes,
-            fixing: fixing.clone(),
-            ..Body::default()
-        };
-        let mut dofs = reserved(*order, WHAT)?;
-        dofs.extend(0..*order as u32);
+        let own = self.given.body.without_load();
+        let mut dofs = reserved(own.order, WHAT)?;
+        dofs.extend(0..own.order as u32);
         let part = Part { body: self.body, piece: 0, whole: true };
         Ok(MadePart { own, part, dofs: dofs.into(), shares: Vec::new() })
     }

@@ -1,6 +1,5 @@
 //! The form in which values are sent: little-endian, lengths before lists, fields in the order of their declaration.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Place, Result};
@@ -235,6 +234,37 @@ impl<T: Wire> Wire for Option<T> {
     }
 }
 
+/// Three numbers of a place.
+impl Wire for [f64; 3] {
+    fn put(&self, to: &mut Vec<u8>) {
+        f64::put_each(self, to);
+    }
+
+    fn take(from: &mut &[u8]) -> Result<Self> {
+        Ok([f64::take(from)?, f64::take(from)?, f64::take(from)?])
+    }
+}
+
+impl<T: Wire> Wire for Box<T> {
+    fn put(&self, to: &mut Vec<u8>) {
+        T::put(self, to);
+    }
+
+    fn take(from: &mut &[u8]) -> Result<Self> {
+        T::take(from).map(Self::new)
+    }
+}
+
+impl<T: Wire> Wire for Box<[T]> {
+    fn put(&self, to: &mut Vec<u8>) {
+        put_all(self, to);
+    }
+
+    fn take(from: &mut &[u8]) -> Result<Self> {
+        Vec::take(from).map(Into::into)
+    }
+}
+
 impl<T: Wire> Wire for Arc<T> {
     fn put(&self, to: &mut Vec<u8>) {
         T::put(self, to);
@@ -252,17 +282,6 @@ impl<T: Wire> Wire for Arc<[T]> {
 
     fn take(from: &mut &[u8]) -> Result<Self> {
         Vec::take(from).map(Into::into)
-    }
-}
-
-impl<T: Wire> Wire for Range<T> {
-    fn put(&self, to: &mut Vec<u8>) {
-        self.start.put(to);
-        self.end.put(to);
-    }
-
-    fn take(from: &mut &[u8]) -> Result<Self> {
-        Ok(T::take(from)?..T::take(from)?)
     }
 }
 

@@ -12,7 +12,8 @@ pub fn taken(name: Name, from: &mut &[u8]) -> Result<Box<dyn Answering>> {
         ($($name:ident)+) => {
             match name {
                 $(Name::$name => asked::<$name>(from),)+
-                Name::Factorise | Name::Boundary | Name::Multiply | Name::Entries | Name::Solve | Name::NullSpace | Name::Join => {
+                Name::Plan | Name::Follow | Name::Analyse | Name::Factorise => Err(damaged()),
+                Name::Boundary | Name::Multiply | Name::Entries | Name::Solve | Name::NullSpace | Name::Join => {
                     Err(damaged())
                 }
             }

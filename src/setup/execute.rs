@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::sync::{Arc, Mutex};
 
-use crate::body::{grounded, Elsewhere, Factorised, GeneralizedInverse, Made, Owed, Plan, Symbolic, Token};
+use crate::body::{grounded, Analysis, Factorised, GeneralizedInverse, Made, NewKplus, Owed, Plan, PlanAway};
 use crate::error::{Error, Kind, Result};
 use crate::model::SolvedModel;
 use crate::numbers::setup::{ANALYSED, FACTORISED, ROUND, WORK};
@@ -11,16 +11,17 @@ use crate::platform::slabs::Slabs;
 use crate::platform::stopwatch;
 use crate::platform::threads;
 use crate::progress::{SetupPart, Watch};
+use crate::setup::analyses::{Analysed, OnRank};
 use crate::setup::lending::{ranks_of, Cost};
 use crate::setup::operators::Operators;
-use crate::setup::plans::of_coordinates;
+use crate::setup::plans::{first_of_bodies, without_ranks, PlanAt, PlanOf};
 use crate::setup::prepared::{Inverse, Prepared};
 use crate::setup::rounds::{rounds, Round};
 
-/// Bodies that represent others, their plans, and the bodies whose factors they use.
+/// The plans of bodies that represent others on ranks, with their analyses, and the bodies whose factors they use.
 pub(super) struct Planned<'a> {
-    pub pending: &'a [usize],
-    pub plans: Vec<Plan>,
+    pub plans: Vec<PlanOf>,
+    pub analysed: Vec<Arc<Analysed>>,
     pub factors: Vec<Option<usize>>,
     /// Of all bodies: the factor may be rounded.
     pub rounded: &'a [bool],
@@ -31,23 +32,25 @@ pub(super) struct Planned<'a> {
 /// K+ by body and rank.
 pub(super) type OnRanks = HashMap<(usize, usize), Arc<Inverse>>;
 
-fn without_ranks() -> Error {
-    Error::new(Kind::Internal, "a body was lent without a plan or a rank")
-}
+/// A plan with its analysis.
+type Analysing<P> = (P, Arc<Analysed>);
 
 /// A K+ that has been made.
 struct OfBody {
     body: usize,
     rank: usize,
-    of: Factorised,
+    inverse: GeneralizedInverse,
+    analysed: Arc<Analysed>,
+    further_analyses: usize,
+    factorisations: usize,
     /// Bytes of its plan.
     planned: usize,
 }
 
-/// K+ that other ranks are making: body, name, bytes and analysis of the plan.
+/// K+ that other ranks are making.
 struct Lent {
     owed: Owed,
-    bodies: Vec<(usize, Arc<Token>, usize, Option<Arc<Symbolic>>)>,
+    bodies: Vec<(usize, NewKplus, Analysing<PlanAway>)>,
 }
 
 impl Lent {
@@ -55,11 +58,17 @@ impl Lent {
         let Self { owed, bodies } = self;
         let answers = owed.answers::<Made>()?.into_iter();
         let made = |(k, answer): (usize, Result<Made>)| {
-            let (body, token, planned, symbolic) = &bodies[k];
-            let of = answer.and_then(|answer| {
-                let symbolic = symbolic.as_ref().ok_or_else(without_ranks)?;
-                let of = answer.at(Arc::clone(token), token.number, symbolic);
-                Ok(OfBody { body: *body, rank: token.rank, of, planned: *planned })
+            let (body, NewKplus { kplus, further }, (_, planned)) = &bodies[k];
+            let of = answer.map(|made: Made| {
+                let (rank, mut analysed) = (kplus.rank, Arc::clone(planned));
+                if let Some((layout, of)) = &made.further {
+                    analysed =
+                        Analysed::new(Arc::clone(layout), *of, rank, OnRank::Away(Arc::clone(further)));
+                }
+                let (further_analyses, factorisations) = (made.further_analyses, made.factorisations);
+                let inverse = made.at(Arc::clone(kplus), kplus.number);
+                let planned = planned.of.bytes;
+                OfBody { body: *body, rank, inverse, analysed, further_analyses, factorisations, planned }
             });
             (*body, of)
         };
@@ -70,54 +79,58 @@ impl Lent {
 /// Factorises bodies here, into `all`. `until`: the fraction of the setup at the end.
 fn make_here(
     model: &SolvedModel,
-    plans: Vec<(usize, Arc<Plan>)>,
+    plans: Vec<(usize, Analysing<Plan>)>,
     rounded: &[bool],
     (watch, until): (&mut Watch, f64),
     all: &mut Vec<OfBody>,
 ) -> Result<()> {
-    let own: Vec<(usize, usize)> = plans.iter().map(|(p, plan)| (*p, plan.bytes())).collect();
-    let plans: Vec<_> = plans.into_iter().map(|(_, plan)| Mutex::new(Some(plan))).collect();
+    let own: Vec<(usize, Arc<Analysed>)> =
+        plans.iter().map(|(p, (_, analysed))| (*p, Arc::clone(analysed))).collect();
+    let bytes = |k: usize| own[k].1.of.bytes;
+    let plans: Vec<_> = plans.into_iter().map(|(_, (plan, _))| Mutex::new(Some(plan))).collect();
     // operations grow like the power 3/2 of the entries
-    let weights = own.iter().map(|(_, bytes)| (*bytes as f64).powf(WORK)).collect();
+    let weights = (0..own.len()).map(|k| (bytes(k) as f64).powf(WORK)).collect();
     let part = SetupPart::of(model.threads(), weights, until);
-    let slabs = Slabs::of(own.iter().filter(|(p, _)| rounded[*p]).map(|(_, bytes)| bytes / 2).sum())?;
+    let in_single = (0..own.len()).filter(|k| rounded[own[*k].0]).map(|k| bytes(k) / 2).sum();
+    let slabs = Slabs::of(in_single)?;
     let make = |k: usize| {
-        let plan = plans[k].lock().ok().and_then(|mut plan| plan.take()).and_then(Arc::into_inner);
-        let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
-        let (p, matrix) = (own[k].0, rounded[own[k].0].then(|| plan.matrix().clone()));
-        let mut made = plan.execute().map_err(|e| of_coordinates(&model.bodies[p].body, e).body(p))?;
+        let plan = plans[k].lock().ok().and_then(|mut plan| plan.take());
+        let mut plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
+        let (p, analysed) = &own[k];
+        let matrix = rounded[*p].then(|| plan.matrix().clone());
+        let Some(OnRank::Here(symbolic)) = analysed.on(0) else { return Err(without_ranks()) };
+        plan.set_analysis(Arc::clone(&symbolic));
+        let mut made = plan.execute().map_err(|e| model.bodies[*p].body.explained(e).body(*p))?;
         if let Some(k) = matrix {
-            made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(p))?;
+            made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(*p))?;
         }
-        Ok(made)
+        let is_further = !Arc::ptr_eq(&made.symbolic, &symbolic);
+        Ok((made, is_further))
     };
-    let take = |k: usize, of: Factorised| all.push(OfBody { body: own[k].0, rank: 0, of, planned: own[k].1 });
+    let take = |k: usize, (made, is_further): (Factorised, bool)| {
+        let (body, mut analysed) = (own[k].0, Arc::clone(&own[k].1));
+        let planned = analysed.of.bytes;
+        let Factorised { inverse, symbolic, further_analyses, factorisations } = made;
+        if is_further {
+            let of = Analysis::from(&*symbolic);
+            analysed = Analysed::new(Arc::clone(&symbolic.layout), of, 0, OnRank::Here(symbolic));
+        }
+        all.push(OfBody { body, rank: 0, inverse, analysed, further_analyses, factorisations, planned });
+    };
     stopwatch::aside(|| watch.every_body(&part, make, take))
 }
 
-/// Of two failures that of the first body.
-fn first_of_bodies(a: Result<()>, b: Error) -> Result<()> {
-    let body = |error: &Error| error.place.body.unwrap_or(0);
-    match a {
-        Err(a) if body(&a) <= body(&b) => Err(a),
-        _ => Err(b),
-    }
-}
-
 impl Prepared {
-    /// The rank of every body, where its K+ is or will be: 0 without other ranks. Bodies that share a factor stay together; `owner`: the
-    /// body whose factor a body uses.
+    /// The rank of every body, where its K+ is or will be: 0 without other ranks. Bodies of equal matrices that may share a factor, but not
+    /// K+, stay together.
     pub(super) fn lend(
         &mut self,
         model: &SolvedModel,
-        (representatives, owner): (&[usize], &dyn Fn(usize) -> usize),
+        representatives: &[usize],
         operators: &Operators,
     ) -> Vec<usize> {
         let Some(lending) = &self.lending else { return vec![0; representatives.len()] };
-        let of_kplus = |p: usize| {
-            let kplus = &self.bodies[p].inverse.as_ref()?.kplus;
-            Some(kplus.elsewhere().map_or(0, Elsewhere::rank))
-        };
+        let of_kplus = |p: usize| self.bodies[p].inverse.as_ref().map(|inverse| inverse.rank());
         let given = |p: usize| {
             of_kplus(p)
                 .or_else(|| of_kplus(representatives[p]))
@@ -133,8 +146,11 @@ impl Prepared {
         };
         let costs: Vec<Option<Cost>> = (0..representatives.len()).map(cost).collect();
         let mut ranks = ranks_of(lending.size(), &given, &costs, lending.all);
-        for p in (0..ranks.len()).filter(|p| owner(*p) != representatives[*p]) {
-            ranks[p] = ranks[owner(p)];
+        let same = self.same_matrices(model);
+        for p in (0..ranks.len()).filter(|p| of_kplus(representatives[*p]).is_none()) {
+            if representatives[same[p]] != representatives[p] {
+                ranks[p] = ranks[same[p]];
+            }
         }
         let new = (0..ranks.len()).filter(|p| given[*p].is_none());
         lending.count(new.clone().count(), new.filter(|p| ranks[*p] > 0).count());
@@ -147,7 +163,7 @@ impl Prepared {
     pub(super) fn execute(
         &mut self,
         model: &SolvedModel,
-        Planned { pending, plans, factors, rounded, work }: Planned,
+        Planned { plans, analysed, factors, rounded, work }: Planned,
         (representatives, ranks): (&[usize], &[usize]),
         watch: &mut Watch,
     ) -> Result<OnRanks> {
@@ -156,15 +172,12 @@ impl Prepared {
             ranks_of.entry(representatives[p]).or_default().insert(*rank);
         }
         let (mut all, mut others) = (Round::default(), Vec::new());
-        for ((&p, plan), factor) in pending.iter().zip(plans).zip(factors) {
-            let plan = Arc::new(plan);
-            if let Some(q) = factor {
-                others.push((p, plan, q));
-                continue;
+        for ((PlanOf { body, rank, at }, analysed), factor) in plans.into_iter().zip(analysed).zip(factors) {
+            match (factor, at) {
+                (Some(q), at) => others.push((body, rank, (at, analysed), q)),
+                (None, PlanAt::Here(plan)) => all.own.push((body, (plan, analysed))),
+                (None, PlanAt::Away(plan)) => all.lent.push((body, rank, (plan, analysed))),
             }
-            let elsewhere = ranks_of[&p].iter().filter(|rank| **rank > 0);
-            all.lent.extend(elsewhere.map(|rank| (p, *rank, Arc::clone(&plan))));
-            all.own.extend(ranks_of[&p].contains(&0).then_some((p, plan)));
         }
         let (mut made, mut ended) = (Vec::new(), Ok(()));
         let least = if self.lending.as_ref().is_some_and(|lending| lending.all) { 1.0 } else { ROUND };
@@ -180,10 +193,7 @@ impl Prepared {
             for (p, answer) in lent.answers()? {
                 match answer {
                     Ok(of) => made.push(of),
-                    Err(error) => {
-                        let error = of_coordinates(&model.bodies[p].body, error).body(p);
-                        ended = first_of_bodies(ended, error);
-                    }
+                    Err(error) => ended = first_of_bodies(ended, error.body(p)),
                 }
             }
             // a host that wants to end does not wait for the next round
@@ -201,17 +211,17 @@ impl Prepared {
             }
             return ended.map(|()| OnRanks::default());
         }
-        for (p, plan, q) in others {
-            let there = all.get(&(q, ranks[p])).or(self.bodies[q].inverse.as_ref());
+        for (p, rank, (plan, analysed), q) in others {
+            let there = all.get(&(q, rank)).or(self.bodies[q].inverse.as_ref());
             let Some(of) = there.cloned() else { continue };
-            let kplus = match of.kplus.elsewhere() {
-                None => Arc::into_inner(plan).ok_or_else(without_ranks)?.with_factor_of(&of.kplus)?,
-                Some(elsewhere) => self.with_factor_elsewhere(&plan, elsewhere)?,
+            let kplus = match plan {
+                PlanAt::Here(plan) => plan.with_factor_of(&of.kplus)?,
+                PlanAt::Away(plan) => self.with_factor_elsewhere(&plan, &analysed, &of.kplus)?,
             };
-            self.bodies[p].symbolic = self.bodies[q].symbolic.clone();
+            self.bodies[p].analysed = self.bodies[q].analysed.clone();
             let (unit, kplus, bytes) = (model.bodies[p].body.unit(), Arc::new(kplus), of.bytes);
             let grounded = kplus.elsewhere().is_none().then(|| self.grounded(model, p)).transpose()?;
-            all.insert((p, ranks[p]), Arc::new(Inverse { unit, kplus, grounded, bytes }));
+            all.insert((p, rank), Arc::new(Inverse { unit, kplus, grounded, bytes }));
         }
         Ok(all)
     }
@@ -227,17 +237,17 @@ impl Prepared {
             (made[k].rank == 0).then(|| self.grounded(model, made[k].body)).transpose()
         })?;
         let mut all = OnRanks::default();
-        for (OfBody { body: p, rank, of, planned }, grounded) in made.into_iter().zip(grounded) {
-            let mut bytes = planned.saturating_sub(of.inverse.bytes_saved());
-            if ranks_of[&p].first() == Some(&rank) {
+        for (of, grounded) in made.into_iter().zip(grounded) {
+            let (p, mut bytes) = (of.body, of.planned.saturating_sub(of.inverse.bytes_saved()));
+            if ranks_of[&p].first() == Some(&of.rank) {
                 self.work.analyses += of.further_analyses;
                 self.work.factorisations += of.factorisations;
-                self.bodies[p].symbolic = Some(of.symbolic);
+                self.bodies[p].analysed = Some(of.analysed);
             } else {
                 bytes = 0;
             }
             let (unit, kplus) = (model.bodies[p].body.unit(), Arc::new(of.inverse));
-            all.insert((p, rank), Arc::new(Inverse { unit, kplus, grounded, bytes }));
+            all.insert((p, of.rank), Arc::new(Inverse { unit, kplus, grounded, bytes }));
         }
         Ok(all)
     }
@@ -253,24 +263,34 @@ impl Prepared {
     }
 
     /// Asks for the K+ of bodies on other ranks.
-    fn lent(&self, plans: Vec<(usize, usize, Arc<Plan>)>, rounded: &[bool], watch: &Watch) -> Result<Lent> {
+    fn lent(
+        &self,
+        plans: Vec<(usize, usize, Analysing<PlanAway>)>,
+        rounded: &[bool],
+        watch: &Watch,
+    ) -> Result<Lent> {
         let (mut questions, mut bodies) = (Vec::new(), Vec::new());
-        for (p, rank, plan) in plans {
-            let lending = self.lending.as_ref().ok_or_else(without_ranks)?;
-            let (asking, token) = lending.factorising(rank, &plan, None, rounded[p]);
+        for (p, rank, (plan, analysed)) in plans {
+            let Some(OnRank::Away(symbolic)) = analysed.on(rank) else { return Err(without_ranks()) };
+            let (asking, new) = plan.factorising(&symbolic, None, rounded[p]);
             questions.push((bodies.len(), asking));
-            bodies.push((p, token, plan.bytes(), plan.symbolic().cloned()));
+            bodies.push((p, new, (plan, analysed)));
         }
         let owed = watch.stops.interrupt.during(|| self.ask(questions))?;
         Ok(Lent { owed, bodies })
     }
 
     /// As `with_factor_of`, on the rank that has the factor.
-    fn with_factor_elsewhere(&self, plan: &Arc<Plan>, of: &Elsewhere) -> Result<GeneralizedInverse> {
-        let lending = self.lending.as_ref().ok_or_else(without_ranks)?;
-        let (asking, token) = lending.factorising(of.rank(), plan, Some(of), false);
-        let symbolic = plan.symbolic().cloned().ok_or_else(without_ranks)?;
+    fn with_factor_elsewhere(
+        &self,
+        plan: &PlanAway,
+        analysed: &Analysed,
+        of: &GeneralizedInverse,
+    ) -> Result<GeneralizedInverse> {
+        let of = of.elsewhere().ok_or_else(without_ranks)?;
+        let Some(OnRank::Away(symbolic)) = analysed.on(of.rank()) else { return Err(without_ranks()) };
+        let (asking, new) = plan.factorising(&symbolic, Some(of), false);
         let answer = self.ask(vec![(0, asking)])?.answers::<Made>()?.pop();
-        Ok(answer.ok_or_else(without_ranks)?.1?.at(token, of.factor, &symbolic).inverse)
+        Ok(answer.ok_or_else(without_ranks)?.1?.at(new.kplus, of.factor))
     }
 }

@@ -2,29 +2,25 @@
 //! are given in different form share one factor; bodies with equal patterns share one symbolic analysis; a body with new
 //! values on its old pattern keeps its analysis.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap};
 use std::hash::Hash;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::{
-    input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic,
-};
+use crate::body::{input_key, pattern_key, same_body, same_matrix, value_key};
 use crate::dual::{DistinctRows, Size};
 use crate::error::Result;
+use crate::linalg::Symmetric;
 use crate::model::SolvedModel;
-use crate::numbers::setup::ANALYSED;
 use crate::platform::threads;
-use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
+use crate::progress::{Log, LogLevel, Phase, Watch};
+use crate::setup::analyses::Analysed;
 use crate::setup::execute::{OnRanks, Planned};
 use crate::setup::memory_limit::check_memory;
 use crate::setup::operators::Operators;
-use crate::setup::plans::{plans, weights};
+use crate::setup::plans::PlanOf;
 use crate::setup::prepared::Prepared;
 use crate::setup::rounding::may_be_rounded;
-
-/// Number of analyses for a pattern that a body tries before it makes a new one.
-const TRIED: usize = 8;
 
 impl Prepared {
     /// Makes K+ of the bodies that have none; `rows`: number of distinct rows on each. Returns the dual operators suited
@@ -36,73 +32,103 @@ impl Prepared {
         watch: &mut Watch,
     ) -> Result<Operators> {
         if self.bodies.iter().all(|own| own.inverse.is_some()) {
-            let operators = self.operators(model, rows, &self.entries(&[], &[], &[]), 0);
+            let operators = self.operators(model, rows, &self.entries(model, &[], &HashMap::new()), 0);
             let all: Vec<usize> = (0..self.bodies.len()).collect();
-            let ranks = self.lend(model, (&all, &|p| p), &operators);
+            let ranks = self.lend(model, &all, &operators);
             self.check_memory(model, &operators, 0, operators.bytes_on_others(&ranks))?;
             return Ok(operators);
         }
         self.try_hosts(model, watch)?;
         let begun = Instant::now();
         let representatives = self.representatives(model)?;
-        let pending: Vec<usize> = (0..representatives.len())
-            .filter(|&p| representatives[p] == p && self.bodies[p].inverse.is_none())
-            .collect();
-        let mut plans = plans(model, &pending, &self.bodies, watch)?;
+        let supposed = self.entries(model, &representatives, &HashMap::new());
+        let ranks = self.lend(model, &representatives, &self.operators(model, rows, &supposed, 0));
+        let of: BTreeSet<(usize, usize)> =
+            representatives.iter().copied().zip(ranks.iter().copied()).collect();
+        let of: Vec<_> = of.into_iter().filter(|(p, _)| self.bodies[*p].inverse.is_none()).collect();
+        let mut plans = self.plans(model, &of, watch)?;
         let begun = watch.phases.ended(Phase::NullSpaces, begun);
-        self.analyse(model, &pending, &mut plans, watch)?;
+        let analysed = self.analyse(model, &mut plans, watch)?;
         let begun = watch.phases.ended(Phase::Analysis, begun);
-        let factors = self.factors_for(model, &pending, &plans);
-        let bytes_of = |k: usize| if factors[k].is_none() { plans[k].bytes() } else { 0 };
-        let bytes = (0..pending.len()).map(bytes_of).sum();
-        let mut operators =
-            self.operators(model, rows, &self.entries(&representatives, &pending, &plans), bytes);
-        let given: HashMap<usize, usize> =
-            pending.iter().zip(&factors).filter_map(|(p, factor)| Some((*p, (*factor)?))).collect();
+        let factors = self.factors_for(model, &plans, &analysed);
+        // on several ranks the first counts
+        let (mut given, mut entries, mut bytes, mut on_others) = (HashMap::new(), HashMap::new(), 0, 0);
+        for ((plan, analysed), factor) in plans.iter().zip(&analysed).zip(&factors) {
+            let is_first = entries.insert(plan.body, analysed.of.entries).is_none();
+            match factor.filter(|_| is_first) {
+                Some(factor) => drop(given.insert(plan.body, factor)),
+                None if is_first => {
+                    bytes += analysed.of.bytes;
+                    on_others += if plan.rank == 0 { 0 } else { analysed.of.bytes };
+                }
+                None => {}
+            }
+        }
+        let entries = self.entries(model, &representatives, &entries);
+        let mut operators = self.operators(model, rows, &entries, bytes);
         let owner = |p: usize| given.get(&representatives[p]).copied().unwrap_or(representatives[p]);
         let rounded = may_be_rounded(model, &operators, owner);
-        let ranks = self.lend(model, (&representatives, &owner), &operators);
-        let mut here = vec![false; ranks.len()];
-        (0..ranks.len()).filter(|p| ranks[*p] == 0).for_each(|p| here[representatives[p]] = true);
-        let on_others = (0..pending.len()).filter(|k| !here[pending[*k]]).map(bytes_of).sum::<usize>();
         self.check_memory(model, &operators, bytes, on_others + operators.bytes_on_others(&ranks))?;
         let work = |p: usize| operators.sizes[p].factorisation();
-        let planned = Planned { pending: &pending, plans, factors, rounded: &rounded, work: &work };
+        let planned = Planned { plans, analysed, factors, rounded: &rounded, work: &work };
         let ended = self.execute(model, planned, (&representatives, &ranks), watch);
         watch.phases.ended(Phase::Factorisation, begun);
         self.share(&representatives, &ranks, ended?);
         operators.factor_bytes = self.bytes_of_factors();
+        let mut pending: Vec<usize> = of.into_iter().map(|(p, _)| p).collect();
+        pending.dedup();
         self.tell_doubts(model, &pending, &watch.log)?;
         Ok(operators)
     }
 
-    /// Entries of the factor of every body: of its K+, of its plan, or of the body that represents it.
-    fn entries(&self, representatives: &[usize], pending: &[usize], plans: &[Plan]) -> Vec<usize> {
-        let planned = plans.iter().map(|plan| plan.symbolic().map_or(0, |of| of.analysis.entries()));
-        let planned: HashMap<usize, usize> = pending.iter().copied().zip(planned).collect();
+    /// Entries of the factor of every body: of its K+, as planned for the body that represents it, or supposed.
+    fn entries(
+        &self,
+        model: &SolvedModel,
+        representatives: &[usize],
+        planned: &HashMap<usize, usize>,
+    ) -> Vec<usize> {
         let of = |p: usize| {
             let there = self.bodies[p].inverse.as_ref().map(|inverse| inverse.kplus.entries());
             there.or_else(|| planned.get(&p).copied())
         };
-        (0..self.bodies.len()).map(|p| of(p).or_else(|| of(*representatives.get(p)?)).unwrap_or(0)).collect()
+        let supposed = |p: usize| model.bodies[p].body.stiffness.as_ref().map(|k| supposed_entries(k));
+        let all = (0..self.bodies.len())
+            .map(|p| of(p).or_else(|| of(*representatives.get(p)?)).or_else(|| supposed(p)).unwrap_or(0));
+        all.collect()
     }
 
-    /// For every plan the body with the factor, present or planned, of an equal matrix with equal dofs held; none if the
+    /// For every plan the body with the factor, present or planned on its rank, of an equal matrix with equal dofs held; none if the
     /// plan must factorise itself.
-    fn factors_for(&self, model: &SolvedModel, pending: &[usize], plans: &[Plan]) -> Vec<Option<usize>> {
+    fn factors_for(
+        &self,
+        model: &SolvedModel,
+        plans: &[PlanOf],
+        analysed: &[Arc<Analysed>],
+    ) -> Vec<Option<usize>> {
         let mut known: HashMap<_, Vec<usize>> = HashMap::new();
-        for (q, own) in self.bodies.iter().enumerate().filter(|(_, own)| own.inverse.is_some()) {
-            known.entry((own.keys, own.symbolic.as_ref().map(Arc::as_ptr))).or_default().push(q);
+        for (q, own) in self.bodies.iter().enumerate() {
+            let Some(inverse) = &own.inverse else { continue };
+            let key = (inverse.rank(), own.keys, own.analysed.as_ref().map(Arc::as_ptr));
+            known.entry(key).or_default().push(q);
         }
-        let mut find = |(&p, plan): (&usize, &Plan)| {
-            let shareable = matches!(plan, Plan::Known(_)) && self.bodies.len() > 1;
-            let symbolic = plan.symbolic().filter(|_| shareable)?;
-            let alike = known.entry((self.bodies[p].keys, Some(Arc::as_ptr(symbolic)))).or_default();
+        let mut find = |(plan, analysed): (&PlanOf, &Arc<Analysed>)| {
+            if !plan.is_known() || self.bodies.len() < 2 {
+                return None;
+            }
+            let p = plan.body;
+            let key = (plan.rank, self.bodies[p].keys, Some(Arc::as_ptr(analysed)));
+            let alike = known.entry(key).or_default();
             let found = alike.iter().copied().find(|&q| same_stiffness(model, p, q));
             alike.extend(found.is_none().then_some(p));
             found
         };
-        pending.iter().zip(plans).map(&mut find).collect()
+        plans.iter().zip(analysed).map(&mut find).collect()
+    }
+
+    /// The first body of an equal matrix for every body.
+    pub(super) fn same_matrices(&self, model: &SolvedModel) -> Vec<usize> {
+        classes(self.bodies.len(), |p| self.bodies[p].keys, |p, q| same_stiffness(model, p, q))
     }
 
     /// For every body the body whose K+ it uses: the first equal body that already has K+, otherwise the first equal
@@ -138,63 +164,6 @@ impl Prepared {
         Ok(())
     }
 
-    /// The analysis of every plan: the previous one of its body, that of another body with an equal pattern, or a new
-    /// one.
-    fn analyse(
-        &mut self,
-        model: &SolvedModel,
-        pending: &[usize],
-        plans: &mut [Plan],
-        watch: &mut Watch,
-    ) -> Result<()> {
-        let mut offers = self.offers();
-        let mut chosen = Vec::with_capacity(plans.len());
-        for (k, &p) in pending.iter().enumerate() {
-            let own = self.bodies[p].symbolic.as_ref();
-            let found = choose(&mut plans[k], own, &offers, |q| self.same_pattern(model, p, q))?;
-            chosen.push(found.unwrap_or(offers.len()));
-            if found.is_none() {
-                offers.push(SharedAnalysis { body: p, layout: plans[k].layout(), symbolic: None, plan: k });
-            }
-        }
-        let new: Vec<usize> = (0..offers.len()).filter(|&o| offers[o].symbolic.is_none()).collect();
-        let bodies: Vec<usize> = new.iter().map(|&o| offers[o].body).collect();
-        let part = SetupPart::of(model.threads(), weights(model, &bodies), ANALYSED);
-        let mut made: Vec<Option<Arc<Symbolic>>> = new.iter().map(|_| None).collect();
-        let analyse = |i: usize| plans[offers[new[i]].plan].analyse().map_err(|e| e.body(bodies[i]));
-        watch.every_body(&part, analyse, |i, symbolic| made[i] = Some(symbolic))?;
-        self.work.analyses += made.len();
-        new.into_iter().zip(made).for_each(|(o, made)| offers[o].symbolic = made);
-        for (plan, o) in plans.iter_mut().zip(chosen) {
-            offers[o].symbolic.iter().for_each(|symbolic| plan.set_analysis(Arc::clone(symbolic)));
-        }
-        Ok(())
-    }
-
-    /// The existing analyses, each once.
-    fn offers(&self) -> Vec<SharedAnalysis> {
-        let mut offers: Vec<SharedAnalysis> = Vec::new();
-        let mut seen = HashSet::new();
-        for (p, own) in self.bodies.iter().enumerate() {
-            if let Some(symbolic) = own.symbolic.as_ref().filter(|of| seen.insert(Arc::as_ptr(of))) {
-                let layout = Arc::clone(&symbolic.layout);
-                offers.push(SharedAnalysis {
-                    body: p,
-                    layout,
-                    symbolic: Some(Arc::clone(symbolic)),
-                    plan: 0,
-                });
-            }
-        }
-        offers
-    }
-
-    fn same_pattern(&self, model: &SolvedModel, p: usize, q: usize) -> bool {
-        let [a, b] = [p, q].map(|p| model.bodies[p].body.stiffness.as_ref());
-        let keys = [p, q].map(|p| self.bodies[p].keys.map(|keys| keys[0]));
-        p == q || keys[0] == keys[1] && a.zip(b).is_some_and(|(a, b)| same_pattern(a, b))
-    }
-
     /// Gives every body the K+ of the body that represents it: what has been `made` on its rank, or was there.
     fn share(&mut self, representatives: &[usize], ranks: &[usize], made: OnRanks) {
         for (p, &representative) in representatives.iter().enumerate() {
@@ -203,7 +172,7 @@ impl Prepared {
             } else if p != representative {
                 self.bodies[p].inverse = self.bodies[representative].inverse.clone();
             }
-            self.bodies[p].symbolic = self.bodies[representative].symbolic.clone();
+            self.bodies[p].analysed = self.bodies[representative].analysed.clone();
         }
     }
 
@@ -284,32 +253,11 @@ fn same_stiffness(model: &SolvedModel, p: usize, q: usize) -> bool {
     a.zip(b).is_some_and(|(a, b)| same_matrix(a, b))
 }
 
-/// A symbolic analysis that exists or will be made by the plan of this number.
-struct SharedAnalysis {
-    /// A body with this pattern.
-    body: usize,
-    layout: Arc<Layout>,
-    symbolic: Option<Arc<Symbolic>>,
-    plan: usize,
-}
-
-/// The first analysis that fits the plan of a body; the body's own analysis comes before those of others.
-fn choose(
-    plan: &mut Plan,
-    own: Option<&Arc<Symbolic>>,
-    offers: &[SharedAnalysis],
-    same_pattern: impl Fn(usize) -> bool,
-) -> Result<Option<usize>> {
-    let is_own =
-        |offer: &SharedAnalysis| offer.symbolic.as_ref().zip(own).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
-    let own = offers.iter().position(is_own);
-    let others = (0..offers.len()).filter(|&o| Some(o) != own && same_pattern(offers[o].body));
-    for o in own.into_iter().chain(others.take(TRIED)) {
-        if plan.follow(&offers[o].layout)? {
-            return Ok(Some(o));
-        }
-    }
-    Ok(None)
+/// Entries of a factor before its analysis, of K with so many entries a row: in one dimension twice these, in two and three dimensions
+/// what nested dissection needs.
+fn supposed_entries(k: &Symmetric) -> usize {
+    let (n, entries) = (k.order().max(1) as f64, k.col.len() as f64);
+    (entries * n.cbrt().min(entries / n)) as usize
 }
 
 /// The first equal member for every member.

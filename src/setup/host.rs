@@ -8,7 +8,6 @@ use crate::error::{Error, Kind, Result};
 use crate::model::SolvedModel;
 use crate::numbers::setup::TRIED;
 use crate::progress::{Phase, SetupPart, Watch};
-use crate::setup::plans::of_coordinates;
 use crate::setup::prepared::{Inverse, Prepared};
 
 impl Prepared {
@@ -30,7 +29,7 @@ impl Prepared {
         let tolerance = model.settings.null_space_tolerance;
         let make = |k: usize| {
             let body = &model.bodies[pending[k]].body;
-            host_inverse(body, tolerance).map_err(|e| of_coordinates(body, e).body(pending[k]))
+            host_inverse(body, tolerance).map_err(|e| body.explained(e).body(pending[k]))
         };
         let mut made: Vec<Option<GeneralizedInverse>> = pending.iter().map(|_| None).collect();
         let ended = watch.every_body(&part, make, |k, inverse| made[k] = Some(inverse));

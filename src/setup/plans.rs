@@ -1,85 +1,116 @@
-//! How K+ of each body will be computed: null spaces and fixing dofs, found before any factorisation.
+//! How K+ of each body will be computed: null spaces and fixing dofs, found before any factorisation, here or where the body is.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::body::{check_diagonal, Body, Digits, GeneralizedInverse, Modes, Pilots, Plan};
+use crate::body::{Layout, Plan, PlanAway, Planned, Planning};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::Multiple;
 use crate::model::SolvedModel;
 use crate::numbers::setup::NULL_SPACES;
+use crate::platform::stopwatch;
 use crate::progress::{SetupPart, Watch};
-use crate::setup::prepared::PreparedBody;
+use crate::setup::prepared::Prepared;
 
-/// Null spaces and fixing dofs of the pending bodies.
-pub(super) fn plans(
-    model: &SolvedModel,
-    pending: &[usize],
-    bodies: &[PreparedBody],
-    watch: &mut Watch,
-) -> Result<Vec<Plan>> {
-    let tolerance = model.settings.null_space_tolerance;
-    let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
-    let find = |k: usize| {
-        let (p, body) = (pending[k], &model.bodies[pending[k]].body);
-        plan(body, bodies[p].pilots.as_deref().cloned(), tolerance, model.is_piece(p))
-            .map_err(|e| of_coordinates(body, e).body(p))
-    };
-    let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
-    watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
-    Ok(plans.into_iter().flatten().collect())
+/// The plan of a body on one of the ranks that need its K+.
+pub(super) struct PlanOf {
+    pub body: usize,
+    pub rank: usize,
+    pub at: PlanAt,
 }
 
-/// If a null space comes from coordinates, its error says so: the coordinates may be wrong.
-pub(super) fn of_coordinates(body: &Body, mut error: Error) -> Error {
-    let only = body.null_space.is_none() && body.coordinates.is_some();
-    if only && error.kind == Kind::NullSpace && !error.what.contains("of these coordinates") {
-        error.what =
-            format!("the coordinates, from which the null space comes, may be wrong: {}", error.what);
+pub(super) enum PlanAt {
+    Here(Plan),
+    Away(PlanAway),
+}
+
+impl PlanOf {
+    pub fn layout(&self) -> Arc<Layout> {
+        match &self.at {
+            PlanAt::Here(plan) => plan.layout(),
+            PlanAt::Away(plan) => Arc::clone(&plan.of.layout),
+        }
     }
-    let entries = body.stiffness.as_deref().filter(|_| error.kind == Kind::Indefinite);
-    if let Some(digits) = entries.and_then(|k| Digits::of_rounded(k, Digits::TOLD)) {
-        error.what = format!("{}; the entries of K have {digits}: rounding may have made it so", error.what);
+
+    /// The null space is known.
+    pub fn is_known(&self) -> bool {
+        match &self.at {
+            PlanAt::Here(plan) => plan.is_known(),
+            PlanAt::Away(plan) => plan.of.is_known,
+        }
     }
-    error
+
+    pub fn here(&self) -> Result<&Plan> {
+        match &self.at {
+            PlanAt::Here(plan) => Ok(plan),
+            PlanAt::Away(_) => Err(Error::new(Kind::Internal, "a plan is looked for on the wrong rank")),
+        }
+    }
+
+    pub fn away(&self) -> Option<&PlanAway> {
+        match &self.at {
+            PlanAt::Here(_) => None,
+            PlanAt::Away(plan) => Some(plan),
+        }
+    }
+}
+
+impl Prepared {
+    /// The plans of bodies on ranks.
+    pub(super) fn plans(
+        &self,
+        model: &SolvedModel,
+        of: &[(usize, usize)],
+        watch: &mut Watch,
+    ) -> Result<Vec<PlanOf>> {
+        let with = |p: usize| Planning {
+            pilots: self.bodies[p].pilots.as_deref().cloned(),
+            tolerance: model.settings.null_space_tolerance,
+            is_piece: model.is_piece(p),
+        };
+        let (mut questions, mut names) = (Vec::new(), HashMap::new());
+        for (k, (p, rank)) in of.iter().enumerate().filter(|(_, (_, rank))| *rank > 0) {
+            let lending = self.lending.as_ref().ok_or_else(without_ranks)?;
+            let (asking, name) = lending.planning(*rank, &model.bodies[*p].body, with(*p));
+            questions.push((k, asking));
+            names.insert(k, name);
+        }
+        let owed = watch.stops.interrupt.during(|| self.ask(questions))?;
+        let here: Vec<usize> = (0..of.len()).filter(|k| of[*k].1 == 0).collect();
+        let bodies: Vec<usize> = here.iter().map(|k| of[*k].0).collect();
+        let part = SetupPart::of(model.threads(), weights(model, &bodies), NULL_SPACES);
+        let find =
+            |k: usize| model.bodies[bodies[k]].body.plan(with(bodies[k])).map_err(|e| e.body(bodies[k]));
+        let mut plans: Vec<Option<PlanAt>> = of.iter().map(|_| None).collect();
+        let take = |k: usize, plan| plans[here[k]] = Some(PlanAt::Here(plan));
+        let mut ended = stopwatch::aside(|| watch.every_body(&part, find, take));
+        for (k, answer) in owed.answers::<Planned>()? {
+            let name = names.remove(&k).ok_or_else(without_ranks)?;
+            match answer {
+                Ok(planned) => plans[k] = Some(PlanAt::Away(PlanAway::new(name, planned))),
+                Err(error) => ended = first_of_bodies(ended, error.body(of[k].0)),
+            }
+        }
+        ended?;
+        let made = |(&(body, rank), at): (_, Option<PlanAt>)| Some(PlanOf { body, rank, at: at? });
+        Ok(of.iter().zip(plans).filter_map(made).collect())
+    }
+}
+
+/// Of two failures that of the first body.
+pub(super) fn first_of_bodies(a: Result<()>, b: Error) -> Result<()> {
+    let body = |error: &Error| error.place.body.unwrap_or(0);
+    match a {
+        Err(a) if body(&a) <= body(&b) => Err(a),
+        _ => Err(b),
+    }
+}
+
+pub(super) fn without_ranks() -> Error {
+    Error::new(Kind::Internal, "a body was lent without a plan or a rank")
 }
 
 /// Numbers of entries of K of these bodies.
 pub(super) fn weights(model: &SolvedModel, bodies: &[usize]) -> Vec<f64> {
     let entries = |&p: &usize| model.bodies[p].body.stiffness.as_ref().map_or(1, |k| k.col.len());
     bodies.iter().map(|p| entries(p) as f64).collect()
-}
-
-/// Null space and fixing dofs of a body, found before any factorisation. Only now is it known whether its motions are soft.
-fn plan(body: &Body, pilots: Option<Pilots>, tolerance: f64, is_piece: bool) -> Result<Plan> {
-    let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
-    let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
-    if !body.has_soft_motions() {
-        check_diagonal(&matrix)?;
-    }
-    let k = Multiple { matrix, by: 1.0 / body.unit() };
-    match pilots {
-        Some(pilots) if pilots.are_all() => Plan::of_pilots(k, pilots),
-        pilots => own_plan(body, k, tolerance, is_piece)?.with_pilots(pilots),
-    }
-}
-
-/// Without unknowns that rows carry.
-fn own_plan(body: &Body, k: Multiple, tolerance: f64, is_piece: bool) -> Result<Plan> {
-    let fixing = body.fixing.as_deref();
-    if let Some(given) = &body.null_space {
-        let planned = GeneralizedInverse::plan_with(k, given, tolerance, fixing)?;
-        return Ok(if given.modes == Modes::Soft { planned } else { planned.or_search(tolerance, true) });
-    }
-    let Some(coordinates) = &body.coordinates else {
-        return GeneralizedInverse::search(k, tolerance, fixing);
-    };
-    let rigid = coordinates.rigid_modes(|i| k.matrix.diagonal(i) > 0.0)?;
-    let planned = match body.coordinate_modes {
-        Modes::Soft => GeneralizedInverse::plan_soft(k, &rigid, fixing)?,
-        modes => GeneralizedInverse::plan_near(k, &rigid, modes, tolerance, fixing)?,
-    };
-    if is_piece {
-        return Ok(planned.or_search(tolerance, false).carrying(rigid));
-    }
-    Ok(planned)
 }

@@ -3,13 +3,14 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::body::{Asking, GeneralizedInverse, Lending, Owed, Pilots, Symbolic};
+use crate::body::{Asking, Elsewhere, GeneralizedInverse, Lending, Owed, Pilots};
 use crate::certificate::LoadOfWhole;
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
 use crate::model::{BodyRevisions, Parts, Revisions, SolvedModel};
 use crate::progress::{Phase, PhaseReport, Phases};
+use crate::setup::analyses::Analysed;
 use crate::setup::operators::Operators;
 use crate::setup::ready::Ready;
 
@@ -38,7 +39,7 @@ pub struct PreparedBody {
     /// Its carried unknowns: K+ holds them.
     pub pilots: Option<Box<Pilots>>,
     /// The last analysis of a matrix with this pattern.
-    pub symbolic: Option<Arc<Symbolic>>,
+    pub analysed: Option<Arc<Analysed>>,
     /// Keys of pattern and values, if already computed.
     pub keys: Option<[u64; 2]>,
 }
@@ -76,6 +77,13 @@ pub struct Work {
     /// kept from previous rows.
     pub columns_computed: usize,
     pub columns_kept: usize,
+}
+
+impl Inverse {
+    /// The rank that keeps K+.
+    pub fn rank(&self) -> usize {
+        self.kplus.elsewhere().map_or(0, Elsewhere::rank)
+    }
 }
 
 impl Prepared {
@@ -141,7 +149,7 @@ impl Prepared {
         for (own, given) in self.bodies.iter_mut().zip(&model.bodies) {
             let now = given.revisions;
             if own.of.analysed != now.analysed {
-                (own.symbolic, own.rank) = (None, None);
+                (own.analysed, own.rank) = (None, None);
             }
             own.keys.take_if(|_| own.of.stiffness != now.stiffness);
             if own.of != now {

@@ -4,23 +4,23 @@ use std::collections::BTreeMap;
 
 /// Bodies of one round: on other ranks, with these; and here.
 #[derive(Debug)]
-pub struct Round<T> {
-    pub lent: Vec<(usize, usize, T)>,
-    pub own: Vec<(usize, T)>,
+pub struct Round<L, O> {
+    pub lent: Vec<(usize, usize, L)>,
+    pub own: Vec<(usize, O)>,
 }
 
-impl<T> Default for Round<T> {
+impl<L, O> Default for Round<L, O> {
     fn default() -> Self {
         Self { lent: Vec::new(), own: Vec::new() }
     }
 }
 
 /// Rounds of so many operations on every rank, and of a body for each of so many threads at least. With no body on another rank all in one.
-pub fn rounds<T>(
-    all: Round<T>,
+pub fn rounds<L, O>(
+    all: Round<L, O>,
     work: &dyn Fn(usize) -> f64,
     (threads, operations): (usize, f64),
-) -> Vec<Round<T>> {
+) -> Vec<Round<L, O>> {
     let of_lent = all.lent.iter().map(|(p, rank, _)| (*rank, *p));
     let mut ranks: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
     for (rank, p) in of_lent.chain(all.own.iter().map(|(p, _)| (0, *p))) {
@@ -38,16 +38,12 @@ pub fn rounds<T>(
         *done += own;
         ((count as f64 * middle / ranks[&rank].1) as usize).min(count - 1)
     };
-    let mut rounds: Vec<Round<T>> = (0..count).map(|_| Round::default()).collect();
-    let mut last: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut rounds: Vec<Round<L, O>> = (0..count).map(|_| Round::default()).collect();
     for (p, rank, of) in all.lent {
-        let round = round_of(rank, p);
-        last.entry(p).and_modify(|last| *last = round.max(*last)).or_insert(round);
-        rounds[round].lent.push((p, rank, of));
+        rounds[round_of(rank, p)].lent.push((p, rank, of));
     }
     for (p, of) in all.own {
-        // what is made here, too, is sent before
-        rounds[round_of(0, p).max(last.get(&p).copied().unwrap_or(0))].own.push((p, of));
+        rounds[round_of(0, p)].own.push((p, of));
     }
     rounds
 }
@@ -57,13 +53,13 @@ mod tests {
     use super::*;
 
     /// Bodies 0 to 9 of 6 operations, every second on rank 1.
-    fn all() -> Round<()> {
+    fn all() -> Round<(), ()> {
         let of = |rank: usize| (0..10).filter(move |p| p % 2 == rank);
         Round { lent: of(1).map(|p| (p, 1, ())).collect(), own: of(0).map(|p| (p, ())).collect() }
     }
 
-    fn bodies(rounds: &[Round<()>]) -> Vec<(Vec<usize>, Vec<usize>)> {
-        let of = |round: &Round<()>| {
+    fn bodies(rounds: &[Round<(), ()>]) -> Vec<(Vec<usize>, Vec<usize>)> {
+        let of = |round: &Round<(), ()>| {
             (round.lent.iter().map(|of| of.0).collect(), round.own.iter().map(|of| of.0).collect())
         };
         rounds.iter().map(of).collect()
@@ -79,9 +75,9 @@ mod tests {
         assert_eq!(rounds(all(), &|_| 0.0, (1, 10.0)).len(), 1, "no work");
         let both =
             Round { lent: vec![(0, 1, ()), (1, 1, ()), (2, 1, ())], own: vec![(2, ()), (3, ()), (4, ())] };
-        let expected = [(vec![0], vec![]), (vec![1], vec![3]), (vec![2], vec![2, 4])];
-        assert_eq!(bodies(&rounds(both, &|_| 6.0, (1, 6.0))), expected, "here after it was sent");
-        let here = Round { lent: Vec::new(), own: all().own };
+        let expected = [(vec![0], vec![2]), (vec![1], vec![3]), (vec![2], vec![4])];
+        assert_eq!(bodies(&rounds(both, &|_| 6.0, (1, 6.0))), expected, "here and there, too");
+        let here = Round::<(), ()> { lent: Vec::new(), own: all().own };
         assert_eq!(rounds(here, &|_| 6.0, (1, 1.0)).len(), 1, "no other rank");
     }
 }

@@ -27,6 +27,12 @@ macro_rules! names {
 }
 
 names! {
+    /// `PlanBody`: keep a body and the plan of its K+. Answer: `Planned`.
+    Plan,
+    /// `Follow`: take over a layout. Answer: which of those offered.
+    Follow,
+    /// `Analyse`: keep a symbolic analysis. Answer: `Analysis`.
+    Analyse,
     /// `Factorise`: keep a K+. Answer: `Made`.
     Factorise,
     /// [`Boundary`]: keep S_b. Answer: nothing.

@@ -8,9 +8,11 @@ use crate::body::elsewhere::{Boundary, Entries, Join, Joined, Multiply, Name, Nu
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::given::Stiffness;
 use crate::body::grounded::grounded;
+use crate::body::layout::Symbolic;
 use crate::body::lent::asked::Answering;
 use crate::body::lent::member::{Member, WithMatrix};
-use crate::body::lent::{Factorise, Made};
+use crate::body::lent::planned::{Analyse, Analysis, Factorise, Follow, PlanBody, PlanHere, Planned};
+use crate::body::lent::Made;
 use crate::body::store::Store;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Csr, Operator, Packed};
@@ -115,6 +117,9 @@ impl Bodies {
 
     fn task(&self, name: Name, from: &mut &[u8]) -> Result<Task> {
         Ok(match name {
+            Name::Plan => Task::Plan(Wire::take(from)?),
+            Name::Follow => Task::Follow(Wire::take(from)?),
+            Name::Analyse => Task::Analyse(Wire::take(from)?),
             Name::Factorise => Task::Factorise(Wire::take(from)?),
             Name::Boundary => Task::Boundary(Wire::take(from)?),
             Name::Multiply => Task::Multiply(Wire::take(from)?),
@@ -132,6 +137,9 @@ impl Bodies {
         }
         let form = |name| self.store.find::<Form>(name);
         match task {
+            Task::Plan(of) => sent(self.plan(of)),
+            Task::Follow(of) => sent(self.follow(of)),
+            Task::Analyse(of) => sent(self.analyse(of)),
             Task::Factorise(of) => sent(self.factorise(of)),
             Task::Boundary(of) => sent(self.boundary(of)),
             Task::Multiply(Multiply { form: name, exact, x }) => {
@@ -153,8 +161,30 @@ impl Bodies {
         self.store.find(name)
     }
 
-    fn factorise(&self, Factorise { kplus, of, rounded, plan }: Factorise) -> Result<Made> {
-        let plan = Arc::into_inner(plan).ok_or_else(damaged)?;
+    fn plan(&self, PlanBody { plan: name, body, with }: PlanBody) -> Result<Planned> {
+        let plan = body.plan(with)?;
+        let told = Planned::from(&plan);
+        self.store.keep(name, PlanHere::new(body, plan));
+        Ok(told)
+    }
+
+    fn follow(&self, Follow { plan, layouts }: Follow) -> Result<Option<usize>> {
+        self.store.find::<PlanHere>(plan)?.with(|plan| plan.follow_first(layouts.iter().map(|of| &**of)))
+    }
+
+    fn analyse(&self, Analyse { plan, symbolic: name }: Analyse) -> Result<Analysis> {
+        let symbolic = self.store.find::<PlanHere>(plan)?.with(|plan| plan.analyse())?;
+        let told = Analysis::from(&*symbolic);
+        self.store.share(name, symbolic);
+        Ok(told)
+    }
+
+    fn factorise(
+        &self,
+        Factorise { kplus, plan, symbolic, further, of, rounded }: Factorise,
+    ) -> Result<Made> {
+        let planned = self.store.find::<PlanHere>(plan)?;
+        let mut plan = planned.take()?;
         let k = Arc::clone(&plan.matrix().matrix);
         if let Some(of) = of {
             let made = plan.with_factor_of(&self.kplus(of)?.kplus)?;
@@ -163,12 +193,18 @@ impl Bodies {
             self.store.keep(kplus, WithMatrix { kplus: Arc::new(made), k, grounded });
             return Ok(told);
         }
-        let (planned, rounds) = (plan.symbolic().cloned(), rounded.then(|| plan.matrix().clone()));
-        let mut made = plan.execute()?;
+        let symbolic = self.store.find::<Symbolic>(symbolic)?;
+        plan.set_analysis(Arc::clone(&symbolic));
+        let rounds = rounded.then(|| plan.matrix().clone());
+        let mut made = plan.execute().map_err(|error| planned.body.explained(error))?;
         if let Some(k) = rounds {
             made.inverse = made.inverse.rounded(&k, &Slabs::of(0)?)?;
         }
-        let told = Made::of(&made, planned.as_ref());
+        let is_further = !Arc::ptr_eq(&made.symbolic, &symbolic);
+        let told = Made::of(&made, is_further);
+        if is_further {
+            self.store.share(further, made.symbolic);
+        }
         let grounded = grounded(Stiffness::Matrix(&k))?;
         self.store.keep(kplus, WithMatrix { kplus: Arc::new(made.inverse), k, grounded });
         Ok(told)
@@ -206,6 +242,9 @@ impl Bodies {
 
 /// A question with its data.
 enum Task {
+    Plan(PlanBody),
+    Follow(Follow),
+    Analyse(Analyse),
     Factorise(Factorise),
     Boundary(Boundary),
     Multiply(Multiply),

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use crate::body::elsewhere::Elsewhere;
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse};
-use crate::body::layout::Symbolic;
+use crate::body::layout::Layout;
+use crate::body::lent::planned::Analysis;
 use crate::body::misfit::Misfit;
 use crate::body::probe::Factor;
 use crate::body::spectrum::Doubt;
@@ -27,10 +28,10 @@ pub struct Made {
     is_rounded: bool,
     carried: usize,
     bytes_saved: usize,
-    /// The analysis, if it is not that of the plan.
-    symbolic: Option<Arc<Symbolic>>,
-    further_analyses: usize,
-    factorisations: usize,
+    /// The analysis, if it is a further one.
+    pub further: Option<(Arc<Layout>, Analysis)>,
+    pub further_analyses: usize,
+    pub factorisations: usize,
 }
 
 wire_struct!(Made {
@@ -48,17 +49,17 @@ wire_struct!(Made {
     is_rounded,
     carried,
     bytes_saved,
-    symbolic,
+    further,
     further_analyses,
     factorisations,
 });
 
 impl Made {
-    /// `planned`: the analysis of the plan.
-    pub fn of(made: &Factorised, planned: Option<&Arc<Symbolic>>) -> Self {
-        let own = Some(&made.symbolic).filter(|own| planned.is_none_or(|planned| !Arc::ptr_eq(own, planned)));
+    /// `is_further`: its analysis is not that of the plan.
+    pub fn of(made: &Factorised, is_further: bool) -> Self {
+        let of = &*made.symbolic;
         Self {
-            symbolic: own.cloned(),
+            further: is_further.then(|| (Arc::clone(&of.layout), of.into())),
             further_analyses: made.further_analyses,
             factorisations: made.factorisations,
             ..Self::of_shared(&made.inverse)
@@ -82,34 +83,29 @@ impl Made {
             is_rounded: kplus.is_rounded(),
             carried: kplus.carried_motions(),
             bytes_saved: kplus.bytes_saved(),
-            symbolic: None,
+            further: None,
             further_analyses: 0,
             factorisations: 0,
         }
     }
 
-    /// What stands for it on rank 0. `factor`: the name of the K+ whose factor it uses; `planned`: the analysis of the plan.
-    pub fn at(self, kplus: Arc<Token>, factor: u64, planned: &Arc<Symbolic>) -> Factorised {
+    /// What stands for it on rank 0. `factor`: the name of the K+ whose factor it uses.
+    pub fn at(self, kplus: Arc<Token>, factor: u64) -> GeneralizedInverse {
         let Self { order, motions, entries, is_rounded, carried, bytes_saved, .. } = self;
         let elsewhere = Elsewhere { kplus, factor, motions, entries, is_rounded, carried, bytes_saved };
-        Factorised {
-            inverse: GeneralizedInverse {
-                null_space: Matrix { rows: order, cols: 0, data: Vec::new() },
-                stiffness: self.stiffness,
-                rounding: self.rounding,
-                error: self.error,
-                fixing: self.fixing,
-                gap: self.gap,
-                softness: self.softness,
-                doubt: self.doubt,
-                misfit: self.misfit,
-                factor: Factor::Elsewhere(elsewhere),
-                carried: None,
-                near: None,
-            },
-            symbolic: self.symbolic.unwrap_or_else(|| Arc::clone(planned)),
-            further_analyses: self.further_analyses,
-            factorisations: self.factorisations,
+        GeneralizedInverse {
+            null_space: Matrix { rows: order, cols: 0, data: Vec::new() },
+            stiffness: self.stiffness,
+            rounding: self.rounding,
+            error: self.error,
+            fixing: self.fixing,
+            gap: self.gap,
+            softness: self.softness,
+            doubt: self.doubt,
+            misfit: self.misfit,
+            factor: Factor::Elsewhere(elsewhere),
+            carried: None,
+            near: None,
         }
     }
 }

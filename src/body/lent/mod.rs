@@ -1,33 +1,26 @@
-//! Bodies lent to other ranks: rank 0 sends their plans (`Lending`), the other ranks make and keep K+ (`Bodies`) and tell what rank 0
-//! has to know of it (`Made`).
+//! Bodies lent to other ranks: rank 0 sends them (`Lending`), the other ranks plan, make and keep K+ (`Bodies`) and tell what rank 0 has to
+//! know of it (`Planned`, `Analysis`, `Made`).
 
 mod asked;
 mod kept;
 mod made;
 mod member;
+mod planned;
 
 pub use asked::{asked, Answering};
 pub use kept::Bodies;
 pub use made::Made;
+pub use planned::{Analysis, NewKplus, PlanAway, Planned};
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
 
-use crate::body::elsewhere::{ask, Asking, Elsewhere, Name, Owed};
-use crate::body::plan::Plan;
+use crate::body::elsewhere::{ask, Asking, Name, Owed};
+use crate::body::planning::Planning;
+use crate::body::Body;
 use crate::error::Result;
-use crate::ranks::{wire_struct, Ranks, Token, Traffic};
-
-/// The question for a K+ by this plan: with the factor of the K+ `of` if given; otherwise with one of its own, which may be `rounded` to
-/// single precision.
-struct Factorise {
-    kplus: u64,
-    of: Option<u64>,
-    rounded: bool,
-    plan: Arc<Plan>,
-}
-
-wire_struct!(Factorise { kplus, of, rounded, plan });
+use crate::ranks::{Ranks, Token, Traffic};
+use planned::PlanBody;
 
 /// The ranks to which bodies may be lent.
 pub struct Lending {
@@ -79,17 +72,10 @@ impl Lending {
         ask(&self.ranks, questions)
     }
 
-    /// The question for a K+ by this plan, and its name: with the factor of `of` if given; otherwise with one of its own, which may be
-    /// `rounded`.
-    pub fn factorising(
-        &self,
-        rank: usize,
-        plan: &Arc<Plan>,
-        of: Option<&Elsewhere>,
-        rounded: bool,
-    ) -> (Asking, Arc<Token>) {
-        let token = Arc::new(self.ranks.token(rank));
-        let (kplus, of, plan) = (token.number, of.map(Elsewhere::name), Arc::clone(plan));
-        (Asking::new(rank, Name::Factorise, Factorise { kplus, of, rounded, plan }), token)
+    /// The question for the plan of a body, which is sent, and the name of the plan.
+    pub fn planning(&self, rank: usize, body: &Body, with: Planning) -> (Asking, Token) {
+        let token = self.ranks.token(rank);
+        let of = PlanBody { plan: token.number, body: body.without_load(), with };
+        (Asking::new(rank, Name::Plan, of), token)
     }
 }

@@ -1,11 +1,10 @@
 //! Sparse matrices on their way to another rank.
 
 use crate::error::Result;
-use crate::linalg::{Csr, Multiple, Symmetric};
+use crate::linalg::{Csr, Symmetric};
 use crate::ranks::{put_all, wire_struct, Wire};
 
 wire_struct!(Csr { cols, ptr, col, val });
-wire_struct!(Multiple { matrix, by });
 
 impl Wire for Symmetric {
     fn put(&self, to: &mut Vec<u8>) {

@@ -15,7 +15,6 @@ use crate::error::Result;
 use crate::linalg::sparse::graph::Graph;
 use crate::linalg::Symmetric;
 use crate::platform::memory::{filled, headroom, Headroom};
-use crate::ranks::wire_struct;
 use elimination::NONE;
 use ordering::order_of_elimination;
 use supernodes::Supernodes;
@@ -33,8 +32,6 @@ pub struct Analysis {
     pub position: Vec<usize>,
     pub(in crate::linalg::cholesky) nodes: Supernodes,
 }
-
-wire_struct!(Analysis { order, position, nodes });
 
 impl Analysis {
     pub fn new(matrix: &Symmetric, held: &[bool]) -> Result<Self> {

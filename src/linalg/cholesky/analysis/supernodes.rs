@@ -11,7 +11,6 @@ use crate::linalg::cholesky::analysis::elimination::{elimination_tree, postorder
 use crate::linalg::sparse::graph::Graph;
 use crate::numbers::linalg::RELAXED;
 use crate::platform::memory::reserved;
-use crate::ranks::wire_struct;
 
 const WHAT: &str = "the pattern of a Cholesky factor";
 
@@ -27,8 +26,6 @@ pub struct Supernodes {
     /// Start of the panel of every supernode, and the end.
     panel: Vec<usize>,
 }
-
-wire_struct!(Supernodes { begin, row_ptr, row, parent, level, panel });
 
 /// One supernode.
 #[derive(Clone)]

@@ -368,7 +368,7 @@ fn what_is_asked_about_a_bar_does_not_depend_on_its_length() {
         assert_eq!(served.end(), 0);
         all
     });
-    let whole = [Name::Factorise, Name::Lend, Name::Bring, Name::Section];
+    let whole = [Name::Plan, Name::Lend, Name::Bring, Name::Section];
     let mut kinds = 0;
     for k in 0..Name::ALL.len() {
         let [short, long, longest] = of.each_ref().map(|all| all[k]);
