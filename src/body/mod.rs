@@ -64,7 +64,7 @@ pub use local::answers;
 pub use local::{Bring, Distributed, Kept, Local, LocalDual, Locals, Put, Question, Section, Seen};
 pub use misfit::Misfit;
 pub use null_space::{Modes, NullSpaceInput};
-pub use pilots::Pilots;
+pub use pilots::{Carried, Pilots};
 pub use plan::Plan;
 pub use planning::Planning;
 pub use rigid_modes::Coordinates;

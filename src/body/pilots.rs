@@ -6,10 +6,25 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::{Matrix, Multiple, Symmetric};
+use crate::platform::memory::zeros;
 use crate::ranks::wire_struct;
 
-/// The carried unknowns of a body.
+/// What an island tells a body of its carried unknowns.
 #[derive(Debug, Clone, PartialEq)]
+pub struct Carried {
+    /// Ascending.
+    pub dofs: Arc<[usize]>,
+    /// Their D~, in the unit of K.
+    pub metric: Arc<[f64]>,
+    /// Power of two by which D of the others is multiplied, and the metric of those without stiffness, in the unit of K.
+    pub scale: f64,
+    pub without: f64,
+}
+
+wire_struct!(Carried { dofs, metric, scale, without });
+
+/// The carried unknowns of a body.
+#[derive(Debug, Clone)]
 pub struct Pilots {
     /// D~ of all unknowns, in the unit of K.
     pub metric: Arc<[f64]>,
@@ -17,9 +32,16 @@ pub struct Pilots {
     pub carried: Arc<[usize]>,
 }
 
-wire_struct!(Pilots { metric, carried });
-
 impl Pilots {
+    /// Of a body with this K.
+    pub fn of(Carried { dofs, metric, scale, without }: &Carried, k: &Symmetric) -> Result<Self> {
+        let mut all = zeros(k.order(), "the metric of a body")?;
+        let own = |i: usize| Some(k.metric(i, 0.0)).filter(|d| *d > 0.0).map_or(*without, |d| d * scale);
+        all.iter_mut().enumerate().for_each(|(i, d)| *d = own(i).min(f64::MAX));
+        dofs.iter().zip(&**metric).for_each(|(dof, d)| all[*dof] = *d);
+        Ok(Self { metric: all.into(), carried: Arc::clone(dofs) })
+    }
+
     /// The motions of single unknowns, n x carried.
     pub(super) fn motions(&self) -> Result<Matrix> {
         let mut motions = Matrix::zeros(self.metric.len(), self.carried.len())?;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::body::digits::Digits;
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::null_space::Modes;
-use crate::body::pilots::Pilots;
+use crate::body::pilots::{Carried, Pilots};
 use crate::body::plan::Plan;
 use crate::body::stiffness::check_diagonal;
 use crate::body::Body;
@@ -16,14 +16,14 @@ use crate::ranks::{wire_struct, Wire};
 /// What a plan needs beside the data of the host.
 pub struct Planning {
     /// Unknowns that rows carry.
-    pub pilots: Option<Pilots>,
+    pub carried: Option<Carried>,
     /// Option null_space_tolerance.
     pub tolerance: f64,
     /// A piece of a body that is cut.
     pub is_piece: bool,
 }
 
-wire_struct!(Planning { pilots, tolerance, is_piece });
+wire_struct!(Planning { carried, tolerance, is_piece });
 
 /// The matrix, and what the host has told of its null space.
 impl Wire for Body {
@@ -70,12 +70,13 @@ impl Body {
         error
     }
 
-    fn planned(&self, Planning { pilots, tolerance, is_piece }: Planning) -> Result<Plan> {
+    fn planned(&self, Planning { carried, tolerance, is_piece }: Planning) -> Result<Plan> {
         let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
         let matrix = Arc::clone(self.stiffness.as_ref().ok_or_else(missing)?);
         if !self.has_soft_motions() {
             check_diagonal(&matrix)?;
         }
+        let pilots = carried.map(|carried| Pilots::of(&carried, &matrix)).transpose()?;
         let k = Multiple { matrix, by: 1.0 / self.unit() };
         match pilots {
             Some(pilots) if pilots.are_all() => Plan::of_pilots(k, pilots),

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::{Away, InIsland, Local, Pilots, Seen};
+use crate::body::{Away, Carried, InIsland, Local, Seen};
 use crate::certificate::{Metric, Trace};
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual, Form};
@@ -38,9 +38,9 @@ struct WithRows {
 
 impl WithRows {
     /// What a body must know of the island.
-    fn told(&self, model: &SolvedModel, k: usize, pilots: Option<&Pilots>) -> InIsland {
+    fn told(&self, model: &SolvedModel, k: usize, carried: Option<&Carried>) -> InIsland {
         let Self { island, rows, metric, .. } = self;
-        let carried = pilots.map_or(&[][..], |pilots| &pilots.carried);
+        let carried = carried.map_or(&[][..], |carried| &carried.dofs);
         let metric = metric.on(k);
         InIsland {
             touched: island.touched.on(k).to_vec(),
@@ -78,7 +78,7 @@ impl Prepared {
         let mut with_rows = reserved(islands.len(), "groups of bodies")?;
         let (mut known, mut metrics) = (Shared::default(), Shared::default());
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
-        let mut pilots = vec![None; model.bodies.len()];
+        let mut all_carried = vec![None; model.bodies.len()];
         for mut island in islands {
             island.refresh(&lengths);
             check_compliance(&island)?;
@@ -87,10 +87,16 @@ impl Prepared {
                 let range = island.touched.range(k);
                 let [first, end] = [range.start, range.end].map(|end| carried.partition_point(|j| *j < end));
                 if first < end {
-                    let by = ratio_of_units(model, &island, p);
-                    let metric = metric.on(k).iter().map(|d| (d * by).min(f64::MAX)).collect();
-                    let carried = carried[first..end].iter().map(|&j| island.touched.dof(j)).collect();
-                    pilots[p] = Some(Box::new(Pilots { metric, carried }));
+                    let (own, by) = (&carried[first..end], ratio_of_units(model, &island, p));
+                    let [is_stiff, without] =
+                        [0.0, island.unit].map(|others| model.bodies[p].body.without(others));
+                    all_carried[p] = Some(Box::new(Carried {
+                        dofs: own.iter().map(|&j| island.touched.dof(j)).collect(),
+                        metric: own.iter().map(|&j| (values[j] * by).min(f64::MAX)).collect(),
+                        // bodies without stiffness are equal in all islands
+                        scale: if is_stiff > 0.0 { by / island.unit } else { 1.0 },
+                        without: without / island.unit * by,
+                    }));
                 }
             }
             let (mut own, compliance) = DualRows::of(&island, values, coupled(&model.settings))?;
@@ -105,7 +111,7 @@ impl Prepared {
             let metric = metrics.share(key, metric, ByBody::eq);
             with_rows.push(WithRows { island: Box::new(island), rows, metric, compliance });
         }
-        self.carry(pilots);
+        self.carry(all_carried);
         watch.phases.ended(Phase::Rows, begun);
         let operators = self.factorize(model, &distinct, watch)?;
         self.tell_pilots(model, &watch.log)?;
@@ -118,10 +124,10 @@ impl Prepared {
 
     /// Logs how many unknowns are carried.
     fn tell_pilots(&self, model: &SolvedModel, log: &Log) -> Result<()> {
-        let carries = |p: &usize| self.bodies[*p].pilots.is_some();
+        let carries = |p: &usize| self.bodies[*p].carried.is_some();
         let Some(first) = (0..self.bodies.len()).find(carries) else { return Ok(()) };
         let all: usize =
-            self.bodies.iter().filter_map(|own| own.pilots.as_ref()).map(|own| own.carried.len()).sum();
+            self.bodies.iter().filter_map(|own| own.carried.as_ref()).map(|own| own.dofs.len()).sum();
         let number = model.name(first) as i64 + model.settings.index_base;
         log.say(LogLevel::Result, || {
             format!(
@@ -182,7 +188,7 @@ impl Prepared {
         let joining = |p: usize| {
             let (k, number) = (island_of[p], number_in[p]);
             self.bodies[p].inverse.as_ref()?.kplus.elsewhere()?;
-            drafts[k].joining(number, islands[k].told(model, number, self.bodies[p].pilots.as_deref()))
+            drafts[k].joining(number, islands[k].told(model, number, self.bodies[p].carried.as_deref()))
         };
         let joins = watch.stops.interrupt.during(|| self.join(joining))?;
         let mut made: Vec<Option<Form>> = all.iter().map(|&p| joins.form(p)).collect();

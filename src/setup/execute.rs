@@ -256,8 +256,8 @@ impl Prepared {
     pub(super) fn grounded(&self, model: &SolvedModel, p: usize) -> Result<Arc<[u32]>> {
         let matrix = model.bodies[p].body.stiffness.as_deref();
         let mut held = matrix.map_or(Ok(Vec::new()), |k| grounded(k.into()))?;
-        if let Some(pilots) = &self.bodies[p].pilots {
-            held.retain(|j| pilots.carried.binary_search(&(*j as usize)).is_err());
+        if let Some(carried) = &self.bodies[p].carried {
+            held.retain(|j| carried.dofs.binary_search(&(*j as usize)).is_err());
         }
         Ok(held.into())
     }

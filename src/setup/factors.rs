@@ -136,7 +136,7 @@ impl Prepared {
     fn representatives(&mut self, model: &SolvedModel) -> Result<Vec<usize>> {
         self.find_keys(model)?;
         let same = |p: usize, q: usize| {
-            self.bodies[p].pilots == self.bodies[q].pilots
+            self.bodies[p].carried == self.bodies[q].carried
                 && same_body(&model.bodies[p].body, &model.bodies[q].body)
         };
         let key = |p: usize| (self.bodies[p].keys, input_key(&model.bodies[p].body));
@@ -229,7 +229,7 @@ impl Prepared {
             } else if let Some(held) = kplus.misfit.filter(|_| !model.is_piece(p)).and_then(|of| of.held()) {
                 log.say(LogLevel::Phase, || format!("body {number}: {held}"))?;
             }
-            if kplus.is_soft() && self.bodies[p].pilots.is_none() {
+            if kplus.is_soft() && self.bodies[p].carried.is_none() {
                 let soft = kplus.stiffness.iter().filter(|stiffness| **stiffness != 0.0);
                 let least = soft.clone().fold(f64::INFINITY, |least: f64, stiffness| least.min(*stiffness));
                 let text = || {

@@ -63,7 +63,7 @@ impl Prepared {
         watch: &mut Watch,
     ) -> Result<Vec<PlanOf>> {
         let with = |p: usize| Planning {
-            pilots: self.bodies[p].pilots.as_deref().cloned(),
+            carried: self.bodies[p].carried.as_deref().cloned(),
             tolerance: model.settings.null_space_tolerance,
             is_piece: model.is_piece(p),
         };

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::body::{Asking, Elsewhere, GeneralizedInverse, Lending, Owed, Pilots};
+use crate::body::{Asking, Carried, Elsewhere, GeneralizedInverse, Lending, Owed};
 use crate::certificate::LoadOfWhole;
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
@@ -37,7 +37,7 @@ pub struct PreparedBody {
     /// The rank where its K+ was made.
     pub rank: Option<u32>,
     /// Its carried unknowns: K+ holds them.
-    pub pilots: Option<Box<Pilots>>,
+    pub carried: Option<Box<Carried>>,
     /// The last analysis of a matrix with this pattern.
     pub analysed: Option<Arc<Analysed>>,
     /// Keys of pattern and values, if already computed.
@@ -180,10 +180,10 @@ impl Prepared {
     }
 
     /// Takes the carried unknowns of every body; drops K+ of those that hold others.
-    pub(super) fn carry(&mut self, pilots: Vec<Option<Box<Pilots>>>) {
-        for (own, pilots) in self.bodies.iter_mut().zip(pilots) {
-            if own.pilots != pilots {
-                (own.inverse, own.operator, own.pilots) = (None, None, pilots);
+    pub(super) fn carry(&mut self, carried: Vec<Option<Box<Carried>>>) {
+        for (own, carried) in self.bodies.iter_mut().zip(carried) {
+            if own.carried != carried {
+                (own.inverse, own.operator, own.carried) = (None, None, carried);
             }
         }
     }
