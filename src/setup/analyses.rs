@@ -1,47 +1,20 @@
 //! Symbolic analyses: bodies with equal patterns share one, as far as the dofs that they hold suit.
 
 use std::collections::{BTreeMap, HashSet};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
-use crate::body::{same_pattern, Analysis, Layout, Symbolic, Token};
+use crate::body::{same_pattern, Analysis, Layout, Symbolic};
 use crate::error::Result;
 use crate::model::SolvedModel;
 use crate::numbers::setup::ANALYSED;
 use crate::platform::stopwatch;
 use crate::progress::{SetupPart, Watch};
+use crate::setup::analysed::{Analysed, OnRank};
 use crate::setup::plans::{first_of_bodies, weights, without_ranks, PlanAt, PlanOf};
 use crate::setup::prepared::Prepared;
 
 /// Number of analyses for a pattern that a body tries before it makes a new one.
 const TRIED: usize = 8;
-
-/// A symbolic analysis, on each rank that needs it.
-pub struct Analysed {
-    pub layout: Arc<Layout>,
-    pub of: Analysis,
-    on: Mutex<BTreeMap<usize, OnRank>>,
-}
-
-#[derive(Clone)]
-pub enum OnRank {
-    Here(Arc<Symbolic>),
-    Away(Arc<Token>),
-}
-
-impl Analysed {
-    /// `rank`: where it has been made first.
-    pub fn new(layout: Arc<Layout>, of: Analysis, rank: usize, on: OnRank) -> Arc<Self> {
-        Arc::new(Self { layout, of, on: Mutex::new([(rank, on)].into()) })
-    }
-
-    pub fn on(&self, rank: usize) -> Option<OnRank> {
-        self.all().get(&rank).cloned()
-    }
-
-    fn all(&self) -> MutexGuard<'_, BTreeMap<usize, OnRank>> {
-        self.on.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
 
 /// An analysis that exists or will be made.
 struct Offer {
@@ -91,7 +64,7 @@ impl Prepared {
         for (k, of, on) in self.made(model, plans, &makers, watch)? {
             let Offer { layout, made, .. } = &mut offers[chosen[k]];
             match made {
-                Some(made) => drop(made.all().insert(plans[k].rank, on)),
+                Some(made) => made.keep(plans[k].rank, on),
                 None => {
                     *made = Some(Analysed::new(Arc::clone(layout), of, plans[k].rank, on));
                     self.work.analyses += 1;

@@ -11,7 +11,7 @@ use crate::platform::slabs::Slabs;
 use crate::platform::stopwatch;
 use crate::platform::threads;
 use crate::progress::{SetupPart, Watch};
-use crate::setup::analyses::{Analysed, OnRank};
+use crate::setup::analysed::{Analysed, OnRank};
 use crate::setup::lending::{ranks_of, Cost};
 use crate::setup::operators::Operators;
 use crate::setup::plans::{first_of_bodies, without_ranks, PlanAt, PlanOf};

@@ -14,7 +14,7 @@ use crate::linalg::Symmetric;
 use crate::model::SolvedModel;
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, Watch};
-use crate::setup::analyses::Analysed;
+use crate::setup::analysed::Analysed;
 use crate::setup::execute::{OnRanks, Planned};
 use crate::setup::memory_limit::check_memory;
 use crate::setup::operators::Operators;

@@ -1,5 +1,6 @@
 //! Data computed once from a model, for any load and gap: null spaces, factors, scaled rows, dual operators.
 
+mod analysed;
 mod analyses;
 mod build;
 mod execute;

@@ -10,7 +10,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
 use crate::model::{BodyRevisions, Parts, Revisions, SolvedModel};
 use crate::progress::{Phase, PhaseReport, Phases};
-use crate::setup::analyses::Analysed;
+use crate::setup::analysed::Analysed;
 use crate::setup::operators::Operators;
 use crate::setup::ready::Ready;
 
