@@ -175,7 +175,7 @@ impl Prepared {
         for ((PlanOf { body, rank, at }, analysed), factor) in plans.into_iter().zip(analysed).zip(factors) {
             match (factor, at) {
                 (Some(q), at) => others.push((body, rank, (at, analysed), q)),
-                (None, PlanAt::Here(plan)) => all.own.push((body, (plan, analysed))),
+                (None, PlanAt::Here(plan)) => all.own.push((body, (*plan, analysed))),
                 (None, PlanAt::Away(plan)) => all.lent.push((body, rank, (plan, analysed))),
             }
         }

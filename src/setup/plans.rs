@@ -19,7 +19,7 @@ pub(super) struct PlanOf {
 }
 
 pub(super) enum PlanAt {
-    Here(Plan),
+    Here(Box<Plan>),
     Away(PlanAway),
 }
 
@@ -81,7 +81,7 @@ impl Prepared {
         let find =
             |k: usize| model.bodies[bodies[k]].body.plan(with(bodies[k])).map_err(|e| e.body(bodies[k]));
         let mut plans: Vec<Option<PlanAt>> = of.iter().map(|_| None).collect();
-        let take = |k: usize, plan| plans[here[k]] = Some(PlanAt::Here(plan));
+        let take = |k: usize, plan| plans[here[k]] = Some(PlanAt::Here(Box::new(plan)));
         let mut ended = stopwatch::aside(|| watch.every_body(&part, find, take));
         for (k, answer) in owed.answers::<Planned>()? {
             let name = names.remove(&k).ok_or_else(without_ranks)?;
