@@ -32,11 +32,12 @@ test_all --lib --test claims --test batteries -- $skip
 # shellcheck disable=SC2086
 BATTERY=${BATTERY:-13000} test_all --test batteries -- every_varied problems_with_friction random_driven $skip
 
-# Wrong in the last bit of its numbers and of those of its answers, each kind of question changes the bits. Five have no numbers.
+# Wrong in the last bit of its numbers and of those of its answers, each kind of question changes the bits. Five have no numbers; of
+# `Basis` the methods of the paper alone ask.
 unset RANKS_LOG
 BITS=40 bits > build/bits_few
 for name in $(sed -n '/^names! {/,/^}/s/^    \([A-Z][A-Za-z]*\),$/\1/p' src/body/elsewhere/asking.rs); do
-    case $name in Follow | Analyse | Loaded | Begin | Negate) continue ;; esac
+    case $name in Follow | Analyse | Loaded | Begin | Negate | Basis) continue ;; esac
     RANKS_WRONG=$name BITS=40 bits > build/bits_wrong
     if cmp -s build/bits_few build/bits_wrong; then echo "$name: a wrong answer is not seen"; exit 1; fi
 done
@@ -49,7 +50,7 @@ awk '{ for (i = 1; i < NF; i += 2) sum[$i] += $(i + 1) }
         if (lent < .6 * bodies) { print "fewer than 60 %"; bad = 1 }
         for (name in sum) {
             printf "%-13s %10d questions\n", name, sum[name]
-            if (sum[name] < 1000 && name != "Section") { print "fewer than 1000"; bad = 1 }
+            if (sum[name] < 1000 && name != "Section" && name != "Basis") { print "fewer than 1000"; bad = 1 }
         }
         exit bad
     }' "$log"

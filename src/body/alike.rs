@@ -1,5 +1,8 @@
 //! Equal bodies, and matrices with equal patterns: found by hash keys and confirmed entry by entry.
 
+use std::ops::Range;
+
+use crate::body::elsewhere::Facts;
 use crate::body::null_space::NullSpaceInput;
 use crate::body::rigid_modes::Coordinates;
 use crate::body::Body;
@@ -12,7 +15,29 @@ pub fn same_pattern(a: &Symmetric, b: &Symmetric) -> bool {
 
 /// Whether both bodies have the same K+ and the same null space.
 pub fn same_body(a: &Body, b: &Body) -> bool {
-    same_input(a, b) && a.stiffness.as_ref().zip(b.stiffness.as_ref()).is_some_and(|(a, b)| same_matrix(a, b))
+    alike(a, b, 0..3, |k, l| same_input(a, b) && same_matrix(k, l))
+}
+
+/// Whether both bodies have the same matrix.
+pub fn same_matrix_of(a: &Body, b: &Body) -> bool {
+    alike(a, b, 0..2, same_matrix)
+}
+
+/// Whether the matrices of both bodies have the same pattern.
+pub fn same_pattern_of(a: &Body, b: &Body) -> bool {
+    alike(a, b, 0..1, same_pattern)
+}
+
+/// Whether matrices are the same; of a body on another rank by these of its keys.
+fn alike(a: &Body, b: &Body, of: Range<usize>, same: impl Fn(&Symmetric, &Symmetric) -> bool) -> bool {
+    if let (Some(k), Some(l)) = (&a.stiffness, &b.stiffness) {
+        return same(k, l);
+    }
+    let keys = |body: &Body| match &body.elsewhere {
+        Some(there) => Some(there.facts.keys),
+        None => Facts::of(body).map(|facts| facts.keys),
+    };
+    a.order == b.order && keys(a).zip(keys(b)).is_some_and(|(a, b)| a[of.clone()] == b[of])
 }
 
 pub fn same_matrix(a: &Symmetric, b: &Symmetric) -> bool {
@@ -59,6 +84,23 @@ pub fn input_key(body: &Body) -> u64 {
     };
     let key = body.null_space.as_ref().map_or(START, |given| some(START, &given.vectors.data));
     body.coordinates.as_ref().map_or(key, |given| some(key, given.places().as_flattened()))
+}
+
+/// Hash key of all the input that [`same_body`] compares besides the matrix.
+pub fn input_keys(body: &Body) -> u64 {
+    let numbers = |key: u64, values: &[f64]| hash(key, values.iter().map(|v| v.to_bits()));
+    let words = |key: u64, words: &[u64]| hash(key, words.iter().copied());
+    let mut key = words(START, &[body.coordinate_modes as u64]);
+    if let Some(given) = &body.null_space {
+        key = numbers(words(key, &[1, given.modes as u64, given.vectors.rows as u64]), &given.vectors.data);
+    }
+    if let Some(given) = &body.coordinates {
+        key = given.key(words(key, &[2]));
+    }
+    match &body.fixing {
+        Some(dofs) => hash(words(key, &[3]), dofs.iter().map(|dof| *dof as u64)),
+        None => key,
+    }
 }
 
 #[cfg(test)]

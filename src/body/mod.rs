@@ -44,14 +44,18 @@ mod values;
 
 pub use crate::ranks::Token;
 pub(crate) use crate::ranks::{wire_struct, wire_unit};
-pub use alike::{input_key, pattern_key, same_body, same_matrix, same_pattern, same_vectors, value_key};
+pub use alike::{
+    input_key, pattern_key, same_body, same_matrix, same_matrix_of, same_pattern, same_pattern_of,
+    same_vectors, value_key,
+};
 pub use assembled::Assembled;
 pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{boundary, diagonal, dirichlet_bytes, Inside};
 pub use coarse::Coarse;
 pub use digits::Digits;
 pub use elsewhere::{
-    ask, Asking, Away, Elsewhere, FormElsewhere, InIsland, Joined, Joining, Name, Owed, ABOUT_BODIES,
+    ask, Asking, Away, BodyElsewhere, Elsewhere, Entered, Facts, FormElsewhere, HostLoad, InIsland, Joined,
+    Joining, Name, Owed, ABOUT_BODIES,
 };
 pub use generalized_inverse::{Factorised, GeneralizedInverse};
 pub use given::Stiffness;
@@ -89,6 +93,8 @@ pub struct Body {
     pub operator: Option<Arc<HostOperator>>,
     /// Alternative: `K_p` as the sum of the matrices of pieces.
     pub assembled: Option<Arc<Assembled>>,
+    /// Alternative: another rank has it, with all that the host has told of it.
+    pub elsewhere: Option<Arc<BodyElsewhere>>,
     /// `R_p` or vectors that may span it; if neither vectors nor coordinates are given, the library finds it.
     pub null_space: Option<Box<NullSpaceInput>>,
     /// Positions of the dofs: candidates for the null space if none is given.
@@ -120,7 +126,43 @@ impl Body {
     /// The largest power of two that does not exceed the largest `K_ii`, 1 if there is no stiffness, force / length:
     /// division by it is exact, so powers of two in the host's units do not change any bit of the results.
     pub fn unit(&self) -> f64 {
-        power_of_two_below(self.k().map_or(0.0, |k| k.largest_diagonal()))
+        power_of_two_below(self.largest_diagonal())
+    }
+
+    /// `max K_ii`, 0 without stiffness, force / length.
+    pub fn largest_diagonal(&self) -> f64 {
+        match &self.elsewhere {
+            Some(there) => there.facts.largest,
+            None => self.k().map_or(0.0, |k| k.largest_diagonal()),
+        }
+    }
+
+    /// Number of entries of its matrix, here or on another rank; none if the host keeps them.
+    pub fn entries(&self) -> Option<usize> {
+        let here = self.stiffness.as_ref().map(|k| k.col.len());
+        here.or_else(|| self.elsewhere.as_ref().map(|there| there.facts.entries))
+    }
+
+    /// The length of its coordinates; 0 without.
+    pub fn length(&self) -> f64 {
+        match &self.elsewhere {
+            Some(there) => there.facts.length,
+            None => self.coordinates.as_ref().map_or(0.0, |given| given.length()),
+        }
+    }
+
+    /// What the last digit of its coordinates makes uncertain ([`Coordinates::last_digit`]); 0 without.
+    pub fn last_digit(&self) -> f64 {
+        match &self.elsewhere {
+            Some(there) => there.facts.last_digit,
+            None => self.coordinates.as_ref().map_or(0.0, |given| given.last_digit()),
+        }
+    }
+
+    /// Nothing but the load remains of a body that another rank has.
+    pub fn let_go(&mut self, there: Arc<BodyElsewhere>) {
+        let (order, load) = (self.order, self.load.take());
+        *self = Self { order, load, elsewhere: Some(there), ..Self::default() };
     }
 
     /// The same body without its load, of which the matrix and functions are shared.
@@ -140,8 +182,7 @@ impl Body {
 
     /// The value used in the metric where `K_ii` is 0: the unit, or `others` if the body has no stiffness.
     pub fn without(&self, others: f64) -> f64 {
-        let stiff = self.k().is_some_and(|k| k.largest_diagonal() > 0.0);
-        if stiff {
+        if self.largest_diagonal() > 0.0 {
             self.unit()
         } else {
             others

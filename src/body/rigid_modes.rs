@@ -1,9 +1,13 @@
 //! Rigid-body modes from the coordinates of the dofs: candidates for the null space.
 
+use std::ops::Range;
+
 use crate::error::{Error, Result};
+use crate::linalg::hash::hash;
 use crate::linalg::vector::{first_non_finite, norm};
 use crate::linalg::{Matrix, SpdSolver};
 use crate::numbers::body::RIGID;
+use crate::numbers::data::BINARY;
 use crate::platform::memory::{copied, headroom, reserved};
 use crate::ranks::wire_struct;
 
@@ -17,6 +21,11 @@ pub struct Coordinates {
 }
 
 wire_struct!(Coordinates { direction, place });
+
+/// Digits of coordinates that have been rounded: fewer may be exact, more are rounding of f64.
+const DIGITS: Range<i32> = 5..13;
+/// Number of points whose digits are counted.
+const POINTS: usize = 256;
 
 /// Bytes of the modes, per dof.
 const PER_DOF: usize = 48;
@@ -72,6 +81,12 @@ impl Coordinates {
         self.direction == other.direction && bits(&self.place)
     }
 
+    /// Hash key, continuing from the key `before`.
+    pub fn key(&self, before: u64) -> u64 {
+        let key = hash(before, self.direction.iter().map(|direction| *direction as u64));
+        hash(key, self.place.as_flattened().iter().map(|x| x.to_bits()))
+    }
+
     /// The rigid modes of a connected body, n x (up to 6), without modes that move nothing; none for a single spring to the
     /// ground.
     pub fn rigid_modes(&self, stiff: impl Fn(usize) -> bool) -> Result<Matrix> {
@@ -94,11 +109,35 @@ impl Coordinates {
 
     /// The largest edge of the box around all dofs.
     pub fn length(&self) -> f64 {
-        let along = |k: usize| {
-            let ends = self.place.iter().map(|place| place[k]);
-            ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.fold(f64::INFINITY, f64::min)
+        (0..3).map(|k| self.along(k)).fold(0.0, f64::max)
+    }
+
+    fn along(&self, k: usize) -> f64 {
+        let ends = self.place.iter().map(|place| place[k]);
+        ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Twice the unit of the last digit of coordinates that have been rounded to a few decimal digits, relative to the distance of
+    /// neighbours; 0 if they have not.
+    pub fn last_digit(&self) -> f64 {
+        let places = &self.place;
+        let some = places.iter().step_by(places.len().div_ceil(POINTS).max(1)).flatten();
+        let decimal = |x: &f64| {
+            let text = format!("{x:e}");
+            let (digits, exponent) = text.split_once('e')?;
+            Some((exponent.parse::<i32>().ok()?, digits.chars().filter(char::is_ascii_digit).count() as i32))
         };
-        (0..3).map(along).fold(0.0, f64::max)
+        // multiples of 2^-20 are exact
+        let all: Vec<_> = some.filter(|x| (*x * BINARY).fract() != 0.0).filter_map(decimal).collect();
+        let most = all.iter().map(|number| number.1).max().unwrap_or(0);
+        let long = all.iter().filter(|number| number.1 + 2 >= most).count();
+        if !DIGITS.contains(&most) || 2 * long < all.len() {
+            return 0.0;
+        }
+        let highest = all.iter().map(|number| number.0).max().unwrap_or(0);
+        let dimension = (0..3).filter(|&k| self.along(k) > 0.0).count().max(1);
+        let nodes = 1 + places.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        2.0 * 10f64.powi(highest - most + 1) * (nodes as f64).powf(1.0 / dimension as f64) / self.length()
     }
 
     /// The rigid motion of v, one entry per dof: velocity of the origin (length) and rotation about the axes, of least

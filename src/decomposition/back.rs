@@ -39,8 +39,9 @@ pub fn of_host(host: &HostModel, parts: &Parts, mut error: Error) -> Error {
         if weights.len() < all || weights.len() > 1 {
             let base = host.settings.index_base;
             let numbers: Vec<i64> = glued.iter().map(|number| *number as i64 + base).collect();
-            let others = weights.iter().map(|(i, _)| *i).filter(|i| i != heaviest);
-            let others: Vec<_> = others.map(|i| kind_and_row(i, contact)).collect();
+            let mut others: Vec<_> = weights.iter().map(|(i, _)| *i).filter(|i| i != heaviest).collect();
+            others.sort_unstable();
+            let others: Vec<_> = others.into_iter().map(|i| kind_and_row(i, contact)).collect();
             error.what = contradiction(kind, &others, base, &numbers);
             error.place.index = glued.first().map(|number| *number as i64);
         }
@@ -75,18 +76,11 @@ fn proof_of_host(parts: &Parts, rows: usize, proof: Proof) -> Proof {
         },
         Proof::Rows { margin, mut weights, heaviest } => {
             weights.retain(|(row, _)| *row < rows);
-            let weight = |at: &(usize, f64)| at.1.abs();
-            let first = weights.first().map_or(heaviest, |at| at.0);
-            let most = weights.iter().fold((first, 0.0), |best, at| {
-                if weight(at) > best.1 {
-                    (at.0, weight(at))
-                } else {
-                    best
-                }
-            });
-            let largest = if most.1 > 0.0 { most.1 } else { 1.0 };
-            weights.iter_mut().for_each(|(_, weight)| *weight /= largest);
-            Proof::Rows { margin, weights, heaviest: most.0 }
+            // of equal weights the last, as in the proof
+            let most = weights.iter().copied().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+            let (heaviest, largest) = most.filter(|most| most.1 != 0.0).unwrap_or((heaviest, 1.0));
+            weights.iter_mut().for_each(|(_, weight)| *weight /= largest.abs());
+            Proof::Rows { margin, weights, heaviest }
         }
     }
 }

@@ -11,6 +11,7 @@ mod rows;
 
 use std::sync::Arc;
 
+use crate::body::BodyElsewhere;
 use crate::error::Result;
 use crate::model::{GivenBody, HostModel, Revisions, SolvedModel};
 
@@ -38,11 +39,7 @@ impl Decomposition {
         host.shares_numbers() || !connected.all_connected() || host.bodies.iter().any(is_cut)
     }
 
-    /// None if it is not due.
-    pub fn of(host: &HostModel, connected: &Connected) -> Result<Option<Self>> {
-        if !Self::is_due(host, connected) {
-            return Ok(None);
-        }
+    pub fn of(host: &HostModel, connected: &Connected) -> Result<Self> {
         let joints = host.joints()?;
         let touched = touched(host, &joints)?;
         let (bodies, mut all) = parts(host, connected, &|j| touched[j])?;
@@ -60,7 +57,7 @@ impl Decomposition {
         model.parts = Some(Arc::new(all));
         let mut made = Self { model, copies, of: host.revisions, has_matrices: true };
         made.refresh(host)?;
-        Ok(Some(made))
+        Ok(made)
     }
 
     /// Whether bodies and rows are still those of the host, and no load acts on an unknown that is in no part.
@@ -69,14 +66,10 @@ impl Decomposition {
         self.of == host.revisions && loose.into_iter().all(|&j| host.load(j) == 0.0)
     }
 
-    /// Drops the matrices of parts that other ranks have; those of whole bodies are the host's own.
-    pub fn let_go(&mut self, is_away: impl Fn(usize) -> bool) {
-        let Some(parts) = &self.model.parts else { return };
-        let is_copy = |part: usize| !parts.parts[part].whole && is_away(part);
-        for (_, given) in self.model.bodies.iter_mut().enumerate().filter(|(part, _)| is_copy(*part)) {
-            given.body.stiffness = None;
-            self.has_matrices = false;
-        }
+    /// Nothing but the loads remains of parts that other ranks have.
+    pub fn let_go(&mut self, gone: Vec<(usize, Arc<BodyElsewhere>)>) {
+        self.has_matrices &= gone.is_empty();
+        gone.into_iter().for_each(|(part, there)| self.model.bodies[part].body.let_go(there));
     }
 
     /// Takes over data that may change without a new setup: options, loads, right-hand sides, laws of friction.

@@ -30,7 +30,7 @@ pub use turned::{TurnedFace, TurnedRow};
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::body::{Coarse, GeneralizedInverse, InIsland, Joining, LocalDual};
+use crate::body::{Coarse, GeneralizedInverse, InIsland, Joining, LocalDual, Token};
 use crate::constraints::Touched;
 use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
@@ -128,7 +128,7 @@ impl Draft {
     }
 
     /// The question for body p if its K+ is on another rank, which then makes `B K_p+ B'`, too, if it is due.
-    pub fn joining(&self, p: usize, of: InIsland) -> Option<Joining> {
+    pub fn joining(&self, p: usize, member: &Token, of: InIsland) -> Option<Joining> {
         let s = &self.subdomains[p];
         let elsewhere = s.kplus.elsewhere()?;
         let form = match &self.distinct[p].1 {
@@ -136,7 +136,7 @@ impl Draft {
             Some(reuse) if reuse.is_all() => None,
             Some(_) => Some((true, s.multiples.firsts())),
         };
-        Some(elsewhere.joining(&s.matrix, form, s.by, of))
+        Some(elsewhere.joining(member, &s.matrix, form, s.by, of))
     }
 
     /// `B K_p+ B'` of body p, none if it is matrix-free; must be called only once per body, and not if another rank makes it.

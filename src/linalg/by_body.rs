@@ -10,6 +10,16 @@ use crate::platform::memory::reserved;
 /// Where each body begins and ends among all unknowns.
 pub type Ranges = Arc<Vec<Range<usize>>>;
 
+/// Bodies of so many unknowns, one after the other.
+pub fn ranges(orders: impl Iterator<Item = usize>) -> Ranges {
+    let mut end = 0;
+    let range = |order: usize| {
+        end += order;
+        end - order..end
+    };
+    Arc::new(orders.map(range).collect())
+}
+
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ByBody<T = f64> {
     ranges: Ranges,
@@ -31,19 +41,6 @@ impl<T: Copy> ByBody<T> {
         let mut values = reserved(ranges.last().map_or(0, |range| range.end), what)?;
         own.into_iter().for_each(|own| values.extend_from_slice(own.as_ref()));
         Ok(Self::of(ranges, values))
-    }
-
-    /// The same of these bodies alone: others have no values.
-    pub fn only(&self, keeps: impl Fn(usize) -> bool) -> Self {
-        let (mut ranges, mut values) = (Vec::with_capacity(self.ranges.len()), Vec::new());
-        for (p, range) in self.ranges.iter().enumerate() {
-            let first = values.len();
-            if keeps(p) {
-                values.extend_from_slice(&self.values[range.clone()]);
-            }
-            ranges.push(first..values.len());
-        }
-        Self { ranges: Arc::new(ranges), values }
     }
 
     /// The values of body p.

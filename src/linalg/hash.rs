@@ -5,9 +5,13 @@ use std::sync::Arc;
 
 pub const START: u64 = 0xcbf2_9ce4_8422_2325;
 
-/// FNV-1a, word by word, continuing from the key `before`; the shift moves the high bits of numbers with few digits down.
+/// Continues from the key `before`, word by word: both halves of a product of 128 bits, so that each bit of a word reaches all of the key,
+/// also a sign alone.
 pub fn hash(before: u64, words: impl Iterator<Item = u64>) -> u64 {
-    words.fold(before, |key, word| (key ^ word ^ (word >> 32)).wrapping_mul(0x0100_0000_01b3))
+    words.fold(before, |key, word| {
+        let product = u128::from(key ^ word) * 0x9e37_79b9_7f4a_7c15;
+        ((product >> 64) as u64 ^ product as u64).wrapping_add(START)
+    })
 }
 
 /// Values of many small parts, most of them equal: each is kept once.

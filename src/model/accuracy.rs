@@ -2,27 +2,21 @@
 //! coordinates, by option `data_accuracy`.
 
 use std::collections::HashMap;
-use std::ops::Range;
 
-use crate::body::Body;
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::hash::{hash, START};
 use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::vector::{norm_max, NOISE};
-use crate::model::contents::SolvedModel;
+use crate::model::contents::{GivenBody, SolvedModel};
 use crate::model::row_sets::empty_row_contradicts;
-use crate::numbers::data::{BINARY, MARGINAL, MOST_BY_COORDINATES};
-use crate::platform::memory::{filled, reserved};
+use crate::numbers::data::{MARGINAL, MOST_BY_COORDINATES};
+use crate::platform::memory::reserved;
 
 /// A right-hand side below this part of the length is not the rounding of a difference of such lengths: it is exact.
 const LAST_DIGIT: f64 = f64::EPSILON / 64.0;
 
-/// Digits of coordinates that have been rounded: fewer may be exact, more are rounding of f64.
-const DIGITS: Range<i32> = 5..13;
 const WHAT: &str = "the lengths of bodies";
-/// Number of points whose digits are counted.
-const SAMPLE: usize = 256;
 
 /// What counts as rounding of the host's normals, weights and coordinates.
 #[derive(Debug, Clone, Copy)]
@@ -41,8 +35,8 @@ pub struct Lengths<'a> {
     /// Of the problem: the largest of all bodies and of the lengths `|h| / max |b|` and `-c / max |b|` that rows demand;
     /// without loads and coordinates also the smallest gap. Other gaps may be far: they say nothing.
     whole: f64,
-    /// Unknowns of rigid equality rows.
-    tied: Vec<bool>,
+    /// Unknowns of rigid equality rows, ascending.
+    tied: Vec<usize>,
     /// Equality rows that others may contradict, if the right-hand side of any may be rounding.
     core: Vec<bool>,
 }
@@ -65,11 +59,8 @@ impl SolvedModel {
 
     /// `by_loads`: of every body `sum_j |f_j| / D^_j`.
     pub fn lengths(&self, by_loads: &[f64]) -> Result<Lengths<'_>> {
-        let of_body = |(body, by_load): (&Body, &f64)| {
-            body.coordinates.as_ref().map_or(*by_load, |given| by_load.max(given.length()))
-        };
-        let of_bodies: Vec<f64> =
-            self.bodies.iter().map(|given| &given.body).zip(by_loads).map(of_body).collect();
+        let of_body = |(given, by_load): (&GivenBody, &f64)| given.body.length().max(*by_load);
+        let of_bodies: Vec<f64> = self.bodies.iter().zip(by_loads).map(of_body).collect();
         let mut length = of_bodies.iter().copied().fold(0.0, f64::max);
         let gaps = || {
             let with_entries = (0..self.contact.len()).filter(|&i| !self.contact.is_empty_row(i));
@@ -84,9 +75,11 @@ impl SolvedModel {
             .map(|i| self.equalities.rhs[i].abs() / self.equalities.largest_entry(i))
             .chain(gaps().map(|gap| -gap))
             .fold(length, f64::max);
-        let mut tied = filled(self.sizes().dofs, false, WHAT)?;
         let rigid = (0..self.equalities.len()).filter(|&i| self.equalities.compliance[i] == 0.0);
-        rigid.flat_map(|i| self.equalities.matrix.row(i)).for_each(|(j, _)| tied[j] = true);
+        let mut tied = reserved(self.equalities.matrix.col.len(), WHAT)?;
+        tied.extend(rigid.flat_map(|i| self.equalities.matrix.row(i)).map(|(j, _)| j));
+        tied.sort_unstable();
+        tied.dedup();
         let mut lengths = Lengths { model: self, of_bodies, whole: length, tied, core: Vec::new() };
         let doubtful = |i: usize| {
             let (c, limit) = (self.equalities.rhs[i], NOISE * length * self.equalities.largest_entry(i));
@@ -101,8 +94,7 @@ impl SolvedModel {
     /// The accuracy of rows that the host makes from coordinates: `data_accuracy`, raised to what the digits of the
     /// coordinates show.
     pub fn accuracy_of_coordinates(&self) -> f64 {
-        let given = self.bodies.iter().filter_map(|given| given.body.coordinates.as_ref());
-        let printed = given.map(|coordinates| of_last_digit(coordinates.places())).fold(0.0, f64::max);
+        let printed = self.bodies.iter().map(|given| given.body.last_digit()).fold(0.0, f64::max);
         self.settings.data_accuracy.max(printed.min(MOST_BY_COORDINATES))
     }
 }
@@ -161,33 +153,6 @@ fn is_rounding(c: f64, limit: f64) -> bool {
     (LAST_DIGIT / NOISE * limit..limit).contains(&c.abs())
 }
 
-/// Twice the unit of the last digit of coordinates that have been rounded to a few decimal digits, relative to the distance of
-/// neighbours; 0 if they have not.
-fn of_last_digit(places: &[[f64; 3]]) -> f64 {
-    let some = places.iter().step_by(places.len().div_ceil(SAMPLE).max(1)).flatten();
-    let decimal = |x: &f64| {
-        let text = format!("{x:e}");
-        let (digits, exponent) = text.split_once('e')?;
-        Some((exponent.parse::<i32>().ok()?, digits.chars().filter(char::is_ascii_digit).count() as i32))
-    };
-    // multiples of 2^-20 are exact
-    let all: Vec<_> = some.filter(|x| (*x * BINARY).fract() != 0.0).filter_map(decimal).collect();
-    let most = all.iter().map(|number| number.1).max().unwrap_or(0);
-    let long = all.iter().filter(|number| number.1 + 2 >= most).count();
-    if !DIGITS.contains(&most) || 2 * long < all.len() {
-        return 0.0;
-    }
-    let highest = all.iter().map(|number| number.0).max().unwrap_or(0);
-    let along = |k: usize| {
-        let ends = places.iter().map(|place| place[k]);
-        ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.fold(f64::INFINITY, f64::min)
-    };
-    let size = (0..3).map(along).fold(0.0, f64::max);
-    let dimension = (0..3).filter(|&k| along(k) > 0.0).count().max(1);
-    let nodes = 1 + places.windows(2).filter(|pair| pair[0] != pair[1]).count();
-    2.0 * 10f64.powi(highest - most + 1) * (nodes as f64).powf(1.0 / dimension as f64) / size
-}
-
 impl Accuracy {
     /// The largest share of the load that may be left out of a marginal answer.
     pub fn marginal(self) -> f64 {
@@ -207,7 +172,10 @@ impl Lengths<'_> {
         let (rows, ends) = (self.model.rows(kind), &self.model.offsets[1..]);
         let is_tied = match kind {
             RowKind::Equality => self.core.get(i).copied().unwrap_or_default(),
-            _ => rows.compliance[i] == 0.0 && rows.matrix.row(i).all(|(j, _)| self.tied[j]),
+            _ => {
+                rows.compliance[i] == 0.0
+                    && rows.matrix.row(i).all(|(j, _)| self.tied.binary_search(&j).is_ok())
+            }
         };
         let bodies = rows.matrix.row(i).map(|(j, _)| ends.partition_point(|end| *end <= j));
         let own = bodies.map(|p| self.of_bodies[p]).fold(0.0, f64::max);

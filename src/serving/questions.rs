@@ -12,7 +12,7 @@ pub fn taken(name: Name, from: &mut &[u8]) -> Result<Box<dyn Answering>> {
         ($($name:ident)+) => {
             match name {
                 $(Name::$name => asked::<$name>(from),)+
-                Name::Plan | Name::Follow | Name::Analyse | Name::Factorise => Err(damaged()),
+                Name::Give | Name::GiveLoad | Name::Enter | Name::Plan | Name::Follow | Name::Analyse | Name::Factorise => Err(damaged()),
                 Name::Boundary | Name::Multiply | Name::Entries | Name::Solve | Name::NullSpace | Name::Join => {
                     Err(damaged())
                 }
@@ -23,7 +23,7 @@ pub fn taken(name: Name, from: &mut &[u8]) -> Result<Box<dyn Answering>> {
         Put Bring Section Couple Fit Measure Largest SizeOfLoad Way Lend LoadOf
         Scale FromLoad Take Loaded Displace Turn Slide
         Begin Shift Strained Residual Correct Added PointAtRows Displacement Deformation
-        Rigid Split Along FreeMotions Place Energy Negate
+        Rigid Basis Split Along FreeMotions Place Energy Negate
         Sizes Left Proof Work
     }
 }

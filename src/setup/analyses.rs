@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
-use crate::body::{same_pattern, Analysis, Layout, Symbolic};
+use crate::body::{same_pattern_of, Analysis, Layout, PlanAway};
 use crate::error::Result;
 use crate::model::SolvedModel;
 use crate::numbers::setup::ANALYSED;
-use crate::platform::stopwatch;
-use crate::progress::{SetupPart, Watch};
+use crate::progress::Watch;
 use crate::setup::analysed::{Analysed, OnRank};
-use crate::setup::plans::{first_of_bodies, weights, without_ranks, PlanAt, PlanOf};
+use crate::setup::given::without_ranks;
+use crate::setup::plans::{PlanAt, PlanOf};
 use crate::setup::prepared::Prepared;
 
 /// Number of analyses for a pattern that a body tries before it makes a new one.
@@ -82,34 +82,15 @@ impl Prepared {
         of: &[usize],
         watch: &mut Watch,
     ) -> Result<Vec<(usize, Analysis, OnRank)>> {
-        let (mut questions, mut names) = (Vec::new(), BTreeMap::new());
-        for &k in of {
-            if let Some(plan) = plans[k].away() {
-                let (asking, name) = plan.analysing();
-                questions.push((k, asking));
-                names.insert(k, name);
-            }
-        }
-        let owed = watch.stops.interrupt.during(|| self.ask(questions))?;
-        let here: Vec<usize> = of.iter().copied().filter(|k| plans[*k].rank == 0).collect();
-        let bodies: Vec<usize> = here.iter().map(|k| plans[*k].body).collect();
-        let part = SetupPart::of(model.threads(), weights(model, &bodies), ANALYSED);
-        let analyse = |i: usize| plans[here[i]].here()?.analyse().map_err(|e| e.body(bodies[i]));
-        let mut made = Vec::new();
-        let take = |i: usize, symbolic: Arc<Symbolic>| {
-            made.push((here[i], Analysis::from(&*symbolic), OnRank::Here(symbolic)));
+        let asking = |i: usize| plans[of[i]].away().map(PlanAway::analysing);
+        let here = |i: usize| {
+            let symbolic = plans[of[i]].here()?.analyse()?;
+            Ok((Analysis::from(&*symbolic), OnRank::Here(symbolic)))
         };
-        let mut ended = stopwatch::aside(|| watch.every_body(&part, analyse, take));
-        for (k, answer) in owed.answers::<Analysis>()? {
-            let name = names.remove(&k).ok_or_else(without_ranks)?;
-            match answer {
-                Ok(of) => made.push((k, of, OnRank::Away(name))),
-                Err(error) => ended = first_of_bodies(ended, error.body(plans[k].body)),
-            }
-        }
-        ended?;
-        made.sort_by_key(|of| of.0);
-        Ok(made)
+        let there = |name, analysis: Analysis| (analysis, OnRank::Away(name));
+        let bodies: Vec<usize> = of.iter().map(|k| plans[*k].body).collect();
+        let made = self.wherever((model, &bodies), asking, here, there, (watch, ANALYSED))?;
+        Ok(of.iter().zip(made).map(|(k, (of, on))| (*k, of, on)).collect())
     }
 
     /// The existing analyses, each once.
@@ -181,8 +162,7 @@ impl Prepared {
     }
 
     fn same_pattern(&self, model: &SolvedModel, p: usize, q: usize) -> bool {
-        let [a, b] = [p, q].map(|p| model.bodies[p].body.stiffness.as_ref());
         let keys = [p, q].map(|p| self.bodies[p].keys.map(|keys| keys[0]));
-        p == q || keys[0] == keys[1] && a.zip(b).is_some_and(|(a, b)| same_pattern(a, b))
+        p == q || keys[0] == keys[1] && same_pattern_of(&model.bodies[p].body, &model.bodies[q].body)
     }
 }

@@ -9,16 +9,16 @@ use crate::certificate::{Metric, Trace};
 use crate::constraints::RowKind;
 use crate::dual::{self, DistinctRows, Draft, Dual, Form};
 use crate::error::{Error, Kind, Result};
+use crate::linalg::by_body::{ranges, ByBody};
 use crate::linalg::hash::{hash, Shared, START};
-use crate::linalg::ByBody;
 use crate::model::{Lengths, Method, Preconditioning, Settings, SolvedModel};
 use crate::numbers::setup::{ASSEMBLED, ASSEMBLED_LUMPED};
 use crate::platform::memory::reserved;
 use crate::platform::stopwatch;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::qp::BetweenSolves;
+use crate::setup::given::OfAway;
 use crate::setup::islands::{Island, Members};
-use crate::setup::lengths::first_lengths;
 use crate::setup::operators::Operators;
 use crate::setup::prepared::{Duals, Prepared};
 use crate::setup::ready::{Apart, Ready};
@@ -34,19 +34,17 @@ struct WithRows {
     metric: Arc<ByBody>,
     /// C', no unit.
     compliance: Vec<f64>,
+    away: OfAway,
 }
 
 impl WithRows {
     /// What a body must know of the island.
-    fn told(&self, model: &SolvedModel, k: usize, carried: Option<&Carried>) -> InIsland {
-        let Self { island, rows, metric, .. } = self;
+    fn told(&self, k: usize, carried: Option<&Carried>) -> InIsland {
+        let Self { island, rows, .. } = self;
         let carried = carried.map_or(&[][..], |carried| &carried.dofs);
-        let metric = metric.on(k);
         InIsland {
-            touched: island.touched.on(k).to_vec(),
             carried: carried.iter().map(|dof| *dof as u32).collect(),
-            metric: island.touched.dofs(k).map(|dof| metric[dof]).collect(),
-            unit: model.bodies[island.bodies[k]].body.without(island.unit),
+            metric: rows.metric[island.touched.range(k)].to_vec(),
             island: island.unit,
             balanced: !rows.coupled,
         }
@@ -72,30 +70,30 @@ impl Prepared {
             return self.refresh(&lengths);
         }
         let islands = islands(model)?;
-        let lengths = first_lengths(model, &islands)?;
+        let away = self.enter(model, &islands, watch)?;
+        let lengths = self.first_lengths(model, &islands, &away)?;
         lengths.check_empty_rows()?;
         self.release();
         let mut with_rows = reserved(islands.len(), "groups of bodies")?;
         let (mut known, mut metrics) = (Shared::default(), Shared::default());
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
         let mut all_carried = vec![None; model.bodies.len()];
-        for mut island in islands {
+        for (mut island, away) in islands.into_iter().zip(away) {
             island.refresh(&lengths);
             check_compliance(&island)?;
-            let (Metric { values, carried }, metric) = metric(model, &island)?;
+            let (Metric { values, carried }, metric) = metric(model, &island, &away)?;
             for (k, &p) in island.bodies.iter().enumerate() {
                 let range = island.touched.range(k);
                 let [first, end] = [range.start, range.end].map(|end| carried.partition_point(|j| *j < end));
                 if first < end {
                     let (own, by) = (&carried[first..end], ratio_of_units(model, &island, p));
-                    let [is_stiff, without] =
-                        [0.0, island.unit].map(|others| model.bodies[p].body.without(others));
+                    let (body, unit) = (&model.bodies[p].body, island.unit);
                     all_carried[p] = Some(Box::new(Carried {
                         dofs: own.iter().map(|&j| island.touched.dof(j)).collect(),
                         metric: own.iter().map(|&j| (values[j] * by).min(f64::MAX)).collect(),
                         // bodies without stiffness are equal in all islands
-                        scale: if is_stiff > 0.0 { by / island.unit } else { 1.0 },
-                        without: without / island.unit * by,
+                        scale: if body.largest_diagonal() > 0.0 { by / unit } else { 1.0 },
+                        without: body.without(unit) / unit * by,
                     }));
                 }
             }
@@ -109,7 +107,7 @@ impl Prepared {
             let rows = known.share(own.key(), own, DualRows::eq);
             let key = hash(START, metric.in_sequence().iter().map(|d| d.to_bits()));
             let metric = metrics.share(key, metric, ByBody::eq);
-            with_rows.push(WithRows { island: Box::new(island), rows, metric, compliance });
+            with_rows.push(WithRows { island: Box::new(island), rows, metric, compliance, away });
         }
         self.carry(all_carried);
         watch.phases.ended(Phase::Rows, begun);
@@ -188,7 +186,8 @@ impl Prepared {
         let joining = |p: usize| {
             let (k, number) = (island_of[p], number_in[p]);
             self.bodies[p].inverse.as_ref()?.kplus.elsewhere()?;
-            drafts[k].joining(number, islands[k].told(model, number, self.bodies[p].carried.as_deref()))
+            let member = &islands[k].away.get(number)?.as_ref()?.name;
+            drafts[k].joining(number, member, islands[k].told(number, self.bodies[p].carried.as_deref()))
         };
         let joins = watch.stops.interrupt.during(|| self.join(joining))?;
         let mut made: Vec<Option<Form>> = all.iter().map(|&p| joins.form(p)).collect();
@@ -202,17 +201,12 @@ impl Prepared {
         let mut joined = joins.answers()?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
         let mut known = Shared::default();
-        for (WithRows { island, rows, metric, compliance }, draft) in islands.into_iter().zip(drafts) {
+        for (WithRows { island, rows, metric, compliance, away }, draft) in islands.into_iter().zip(drafts) {
             let columns = draft.columns();
             self.work.columns_computed += columns.computed;
             self.work.columns_kept += columns.kept;
             // Algorithm 3 uses the rigid modes without scaling, as in the paper
-            let (mut away, mut parts) = (Vec::new(), Vec::new());
-            for &p in &island.bodies {
-                let (own, coarse) = joined.remove(&p).unzip();
-                away.push(own);
-                parts.push((made[p].take(), coarse));
-            }
+            let parts = island.bodies.iter().map(|p| (made[*p].take(), joined.remove(p)));
             let dual = draft.finish(parts, compliance, !rows.coupled);
             let dual = known.share(dual.key(), dual, Dual::same);
             let missing = || Error::new(Kind::State, "a body has not been set up");
@@ -223,10 +217,7 @@ impl Prepared {
             };
             let kplus = |part: usize| Ok(&inverse(part)?.kplus);
             let whole = Whole::of(model, &island, &OfParts { kplus: &kplus, grounded: &grounded })?;
-            let some_away = away.iter().any(Option::is_some);
-            let away: Box<[Option<Away>]> = if some_away { away.into() } else { Box::default() };
-            let metric = if some_away { Arc::new(metric.only(|k| away[k].is_none())) } else { metric };
-            let apart = (some_away || whole.is_some()).then(|| Box::new(Apart { whole, away }));
+            let apart = (!away.is_empty() || whole.is_some()).then(|| Box::new(Apart { whole, away }));
             let pairs = (!island.friction.is_empty()).then(Box::default);
             ready.push(Ready {
                 island,
@@ -255,18 +246,25 @@ fn ratio_of_units(model: &SolvedModel, island: &Island, body: usize) -> f64 {
     (island.unit / model.bodies[body].body.without(island.unit)).min(2f64.powi(1000))
 }
 
-/// `D~ / 2^p` of an island, where rows touch and over all unknowns; for dofs without stiffness D is that of the stiffest dof of their
+/// `D~ / 2^p` of an island, where rows touch and over all unknowns of the bodies that are here; for dofs without stiffness D is that of the stiffest dof of their
 /// body.
-fn metric(model: &SolvedModel, island: &Island) -> Result<(Metric, ByBody)> {
-    let bodies = island.matrices(model);
+fn metric(model: &SolvedModel, island: &Island, away: &[Option<Away>]) -> Result<(Metric, ByBody)> {
+    let bodies = island.matrices(model, away);
     let rows = RowKind::ALL.map(|kind| &island.members(kind).rows);
     let at_rows = Metric::of(&Trace::of(&bodies, Seen::unit), rows, &|_, _| true, island.unit)?;
-    let everywhere = |body: &Local| -> Vec<f64> {
-        (0..body.order()).map(|i| body.stiffness.metric(i, body.unit) / island.unit).collect()
+    let everywhere = |(k, body): (usize, &Seen)| {
+        let Ok(body) = body.here() else { return Vec::new() };
+        let of = |i: usize| body.stiffness.metric(i, body.unit) / island.unit;
+        let mut own: Vec<f64> = (0..body.order()).map(of).collect();
+        body.set_at_rows(&at_rows.values[island.touched.range(k)], &mut own);
+        own
     };
-    let each = bodies.iter().filter_map(|body| body.here().ok()).map(everywhere);
-    let mut all = ByBody::from_each(&island.ranges, each, "the metric of an island")?;
-    island.touched.set(&at_rows.values, &mut all);
+    let each = bodies.iter().enumerate().map(everywhere);
+    let ranges = match away.is_empty() {
+        true => Arc::clone(&island.ranges),
+        false => ranges(bodies.iter().map(|body| body.here().map_or(0, Local::order))),
+    };
+    let all = ByBody::from_each(&ranges, each, "the metric of an island")?;
     Ok((at_rows, all))
 }
 

@@ -1,6 +1,6 @@
 //! The factorisations, here and on other ranks.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex};
 
 use crate::body::{grounded, Analysis, Factorised, GeneralizedInverse, Made, NewKplus, Owed, Plan, PlanAway};
@@ -12,9 +12,8 @@ use crate::platform::stopwatch;
 use crate::platform::threads;
 use crate::progress::{SetupPart, Watch};
 use crate::setup::analysed::{Analysed, OnRank};
-use crate::setup::lending::{ranks_of, Cost};
-use crate::setup::operators::Operators;
-use crate::setup::plans::{first_of_bodies, without_ranks, PlanAt, PlanOf};
+use crate::setup::given::{first_of_bodies, without_ranks};
+use crate::setup::plans::{PlanAt, PlanOf};
 use crate::setup::prepared::{Inverse, Prepared};
 use crate::setup::rounds::{rounds, Round};
 
@@ -23,6 +22,8 @@ pub(super) struct Planned<'a> {
     pub plans: Vec<PlanOf>,
     pub analysed: Vec<Arc<Analysed>>,
     pub factors: Vec<Option<usize>>,
+    /// The same if all bodies were on one rank.
+    pub shared: Vec<Option<usize>>,
     /// Of all bodies: the factor may be rounded.
     pub rounded: &'a [bool],
     /// Of all bodies: operations of the factorisation.
@@ -78,7 +79,7 @@ impl Lent {
 
 /// Factorises bodies here, into `all`. `until`: the fraction of the setup at the end.
 fn make_here(
-    model: &SolvedModel,
+    (model, explained): (&SolvedModel, &(dyn Fn(usize, Error) -> Error + Sync)),
     plans: Vec<(usize, Analysing<Plan>)>,
     rounded: &[bool],
     (watch, until): (&mut Watch, f64),
@@ -100,7 +101,7 @@ fn make_here(
         let matrix = rounded[*p].then(|| plan.matrix().clone());
         let Some(OnRank::Here(symbolic)) = analysed.on(0) else { return Err(without_ranks()) };
         plan.set_analysis(Arc::clone(&symbolic));
-        let mut made = plan.execute().map_err(|e| model.bodies[*p].body.explained(e).body(*p))?;
+        let mut made = plan.execute().map_err(|e| explained(*p, e).body(*p))?;
         if let Some(k) = matrix {
             made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(*p))?;
         }
@@ -121,58 +122,27 @@ fn make_here(
 }
 
 impl Prepared {
-    /// The rank of every body, where its K+ is or will be: 0 without other ranks. Bodies of equal matrices that may share a factor, but not
-    /// K+, stay together.
-    pub(super) fn lend(
-        &mut self,
-        model: &SolvedModel,
-        representatives: &[usize],
-        operators: &Operators,
-    ) -> Vec<usize> {
-        let Some(lending) = &self.lending else { return vec![0; representatives.len()] };
-        let of_kplus = |p: usize| self.bodies[p].inverse.as_ref().map(|inverse| inverse.rank());
-        let given = |p: usize| {
-            of_kplus(p)
-                .or_else(|| of_kplus(representatives[p]))
-                .or(self.bodies[p].rank.map(|rank| rank as usize))
-        };
-        let given: Vec<Option<usize>> = (0..representatives.len()).map(given).collect();
-        let assembly = operators.weights();
-        let cost = |p: usize| {
-            let bytes =
-                model.bodies[p].body.stiffness.as_ref()?.col.len() * (size_of::<f64>() + size_of::<u32>());
-            let work = operators.sizes[p].factorisation() + assembly[p];
-            Some(Cost { work, bytes: bytes as f64 })
-        };
-        let costs: Vec<Option<Cost>> = (0..representatives.len()).map(cost).collect();
-        let mut ranks = ranks_of(lending.size(), &given, &costs, lending.all);
-        let same = self.same_matrices(model);
-        for p in (0..ranks.len()).filter(|p| of_kplus(representatives[*p]).is_none()) {
-            if representatives[same[p]] != representatives[p] {
-                ranks[p] = ranks[same[p]];
-            }
-        }
-        let new = (0..ranks.len()).filter(|p| given[*p].is_none());
-        lending.count(new.clone().count(), new.filter(|p| ranks[*p] > 0).count());
-        self.bodies.iter_mut().zip(&ranks).for_each(|(own, rank)| own.rank = Some(*rank as u32));
-        ranks
-    }
-
     /// Makes the K+ of the bodies that represent others, on each rank of those; first those with a factor of their own. What could be
     /// made is kept if another body fails.
     pub(super) fn execute(
         &mut self,
         model: &SolvedModel,
-        Planned { plans, analysed, factors, rounded, work }: Planned,
-        (representatives, ranks): (&[usize], &[usize]),
+        Planned { plans, analysed, factors, shared, rounded, work }: Planned,
         watch: &mut Watch,
     ) -> Result<OnRanks> {
-        let mut ranks_of: HashMap<usize, BTreeSet<usize>> = HashMap::new();
-        for (p, rank) in ranks.iter().enumerate() {
-            ranks_of.entry(representatives[p]).or_default().insert(*rank);
-        }
+        // on several ranks the first counts, and what would be shared on one rank does not
+        let mut seen = HashSet::new();
+        let is_first = |of: &PlanOf| self.bodies[of.body].inverse.is_none() && seen.insert(of.body);
+        let are_first: Vec<bool> = plans.iter().map(is_first).collect();
+        let counted: HashSet<(usize, usize)> = (0..plans.len())
+            .filter(|k| are_first[*k] && shared[*k].is_none())
+            .map(|k| (plans[k].body, plans[k].rank))
+            .collect();
+        let by: HashMap<(usize, usize), usize> = plans.iter().map(|of| ((of.body, of.rank), of.by)).collect();
         let (mut all, mut others) = (Round::default(), Vec::new());
-        for ((PlanOf { body, rank, at }, analysed), factor) in plans.into_iter().zip(analysed).zip(factors) {
+        for ((PlanOf { body, rank, at, .. }, analysed), factor) in
+            plans.into_iter().zip(analysed).zip(factors)
+        {
             match (factor, at) {
                 (Some(q), at) => others.push((body, rank, (at, analysed), q)),
                 (None, PlanAt::Here(plan)) => all.own.push((body, (*plan, analysed))),
@@ -187,7 +157,8 @@ impl Prepared {
             let left = (count - k - 1) as f64 / count as f64;
             let until = FACTORISED - left * (FACTORISED - ANALYSED);
             let lent = self.lent(lent, rounded, watch)?;
-            if let Err(error) = make_here(model, own, rounded, (watch, until), &mut made) {
+            let explained = |p: usize, e: Error| model.bodies[by[&(p, 0)]].body.explained(e);
+            if let Err(error) = make_here((model, &explained), own, rounded, (watch, until), &mut made) {
                 ended = first_of_bodies(ended, error);
             }
             for (p, answer) in lent.answers()? {
@@ -202,12 +173,10 @@ impl Prepared {
                 break;
             }
         }
-        let mut all = self.kept(model, made, &ranks_of)?;
+        let mut all = self.kept(model, made, &counted, &by)?;
         if ended.is_err() {
-            for ((p, rank), inverse) in all {
-                if rank == ranks[p] {
-                    self.bodies[p].inverse = Some(inverse);
-                }
+            for (of, inverse) in all {
+                self.bodies[by[&of]].inverse = Some(inverse);
             }
             return ended.map(|()| OnRanks::default());
         }
@@ -220,7 +189,8 @@ impl Prepared {
             };
             self.bodies[p].analysed = self.bodies[q].analysed.clone();
             let (unit, kplus, bytes) = (model.bodies[p].body.unit(), Arc::new(kplus), of.bytes);
-            let grounded = kplus.elsewhere().is_none().then(|| self.grounded(model, p)).transpose()?;
+            let grounded =
+                kplus.elsewhere().is_none().then(|| self.grounded(model, by[&(p, rank)])).transpose()?;
             all.insert((p, rank), Arc::new(Inverse { unit, kplus, grounded, bytes }));
         }
         Ok(all)
@@ -231,15 +201,16 @@ impl Prepared {
         &mut self,
         model: &SolvedModel,
         made: Vec<OfBody>,
-        ranks_of: &HashMap<usize, BTreeSet<usize>>,
+        counted: &HashSet<(usize, usize)>,
+        by: &HashMap<(usize, usize), usize>,
     ) -> Result<OnRanks> {
         let grounded = threads::run(model.threads(), made.len(), |k| {
-            (made[k].rank == 0).then(|| self.grounded(model, made[k].body)).transpose()
+            (made[k].rank == 0).then(|| self.grounded(model, by[&(made[k].body, 0)])).transpose()
         })?;
         let mut all = OnRanks::default();
         for (of, grounded) in made.into_iter().zip(grounded) {
             let (p, mut bytes) = (of.body, of.planned.saturating_sub(of.inverse.bytes_saved()));
-            if ranks_of[&p].first() == Some(&of.rank) {
+            if counted.contains(&(p, of.rank)) {
                 self.work.analyses += of.further_analyses;
                 self.work.factorisations += of.factorisations;
                 self.bodies[p].analysed = Some(of.analysed);

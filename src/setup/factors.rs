@@ -2,15 +2,14 @@
 //! are given in different form share one factor; bodies with equal patterns share one symbolic analysis; a body with new
 //! values on its old pattern keeps its analysis.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::hash::Hash;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::{input_key, pattern_key, same_body, same_matrix, value_key};
+use crate::body::{input_key, pattern_key, same_body, same_matrix_of, value_key, Body};
 use crate::dual::{DistinctRows, Size};
 use crate::error::Result;
-use crate::linalg::Symmetric;
 use crate::model::SolvedModel;
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, Watch};
@@ -18,7 +17,7 @@ use crate::setup::analysed::Analysed;
 use crate::setup::execute::{OnRanks, Planned};
 use crate::setup::memory_limit::check_memory;
 use crate::setup::operators::Operators;
-use crate::setup::plans::PlanOf;
+use crate::setup::plans::{Maker, PlanOf};
 use crate::setup::prepared::Prepared;
 use crate::setup::rounding::may_be_rounded;
 
@@ -31,33 +30,30 @@ impl Prepared {
         rows: &[DistinctRows],
         watch: &mut Watch,
     ) -> Result<Operators> {
+        let ranks: Vec<usize> = (0..self.bodies.len()).map(|p| self.rank(p)).collect();
         if self.bodies.iter().all(|own| own.inverse.is_some()) {
             let operators = self.operators(model, rows, &self.entries(model, &[], &HashMap::new()), 0);
-            let all: Vec<usize> = (0..self.bodies.len()).collect();
-            let ranks = self.lend(model, &all, &operators);
             self.check_memory(model, &operators, 0, operators.bytes_on_others(&ranks))?;
             return Ok(operators);
         }
         self.try_hosts(model, watch)?;
         let begun = Instant::now();
         let representatives = self.representatives(model)?;
-        let supposed = self.entries(model, &representatives, &HashMap::new());
-        let ranks = self.lend(model, &representatives, &self.operators(model, rows, &supposed, 0));
-        let of: BTreeSet<(usize, usize)> =
-            representatives.iter().copied().zip(ranks.iter().copied()).collect();
-        let of: Vec<_> = of.into_iter().filter(|(p, _)| self.bodies[*p].inverse.is_none()).collect();
-        let mut plans = self.plans(model, &of, watch)?;
+        let makers = self.makers(&representatives, &ranks);
+        let mut plans = self.plans(model, makers, watch)?;
         let begun = watch.phases.ended(Phase::NullSpaces, begun);
         let analysed = self.analyse(model, &mut plans, watch)?;
         let begun = watch.phases.ended(Phase::Analysis, begun);
-        let factors = self.factors_for(model, &plans, &analysed);
-        // on several ranks the first counts
+        // what is shared if all are on one rank decides what is rounded, and what memory is counted
+        let shared = self.factors_for(model, &plans, &analysed, |_| 0);
+        let factors = self.factors_for(model, &plans, &analysed, |rank| rank);
         let (mut given, mut entries, mut bytes, mut on_others) = (HashMap::new(), HashMap::new(), 0, 0);
-        for ((plan, analysed), factor) in plans.iter().zip(&analysed).zip(&factors) {
+        for ((plan, analysed), shared) in plans.iter().zip(&analysed).zip(&shared) {
             let is_first = entries.insert(plan.body, analysed.of.entries).is_none();
-            match factor.filter(|_| is_first) {
+            let is_new = is_first && self.bodies[plan.body].inverse.is_none();
+            match shared.filter(|_| is_new) {
                 Some(factor) => drop(given.insert(plan.body, factor)),
-                None if is_first => {
+                None if is_new => {
                     bytes += analysed.of.bytes;
                     on_others += if plan.rank == 0 { 0 } else { analysed.of.bytes };
                 }
@@ -67,22 +63,27 @@ impl Prepared {
         let entries = self.entries(model, &representatives, &entries);
         let mut operators = self.operators(model, rows, &entries, bytes);
         let owner = |p: usize| given.get(&representatives[p]).copied().unwrap_or(representatives[p]);
-        let rounded = may_be_rounded(model, &operators, owner);
+        let mut rounded = may_be_rounded(model, &operators, owner);
+        for plan in &plans {
+            let owner = owner(plan.body);
+            let there = self.bodies[owner].inverse.as_ref().map(|inverse| inverse.kplus.is_rounded());
+            rounded[plan.body] = there.unwrap_or(rounded[owner]);
+        }
         self.check_memory(model, &operators, bytes, on_others + operators.bytes_on_others(&ranks))?;
         let work = |p: usize| operators.sizes[p].factorisation();
-        let planned = Planned { plans, analysed, factors, rounded: &rounded, work: &work };
-        let ended = self.execute(model, planned, (&representatives, &ranks), watch);
+        let mut pending: Vec<usize> = plans.iter().map(|plan| plan.body).collect();
+        pending.dedup();
+        let planned = Planned { plans, analysed, factors, shared, rounded: &rounded, work: &work };
+        let ended = self.execute(model, planned, watch);
         watch.phases.ended(Phase::Factorisation, begun);
         self.share(&representatives, &ranks, ended?);
         operators.factor_bytes = self.bytes_of_factors();
-        let mut pending: Vec<usize> = of.into_iter().map(|(p, _)| p).collect();
-        pending.dedup();
         self.tell_doubts(model, &pending, &watch.log)?;
         Ok(operators)
     }
 
     /// Entries of the factor of every body: of its K+, as planned for the body that represents it, or supposed.
-    fn entries(
+    pub(super) fn entries(
         &self,
         model: &SolvedModel,
         representatives: &[usize],
@@ -92,24 +93,36 @@ impl Prepared {
             let there = self.bodies[p].inverse.as_ref().map(|inverse| inverse.kplus.entries());
             there.or_else(|| planned.get(&p).copied())
         };
-        let supposed = |p: usize| model.bodies[p].body.stiffness.as_ref().map(|k| supposed_entries(k));
+        let supposed = |p: usize| supposed_entries(&model.bodies[p].body);
         let all = (0..self.bodies.len())
             .map(|p| of(p).or_else(|| of(*representatives.get(p)?)).or_else(|| supposed(p)).unwrap_or(0));
         all.collect()
     }
 
+    /// The K+ that are missing: one for equal bodies on one rank.
+    fn makers(&self, representatives: &[usize], ranks: &[usize]) -> Vec<Maker> {
+        let of = |p: usize| (representatives[p], ranks[p]);
+        let (has, lacks): (Vec<usize>, Vec<usize>) =
+            (0..ranks.len()).partition(|p| self.bodies[*p].inverse.is_some());
+        let has: HashSet<(usize, usize)> = has.into_iter().map(of).collect();
+        let missing = lacks.into_iter().rev().filter(|p| !has.contains(&of(*p)));
+        let makers: BTreeMap<(usize, usize), usize> = missing.map(|p| (of(p), p)).collect();
+        makers.into_iter().map(|((body, rank), by)| Maker { body, rank, by }).collect()
+    }
+
     /// For every plan the body with the factor, present or planned on its rank, of an equal matrix with equal dofs held; none if the
-    /// plan must factorise itself.
+    /// plan must factorise itself. `on`: the rank that counts for a rank.
     fn factors_for(
         &self,
         model: &SolvedModel,
         plans: &[PlanOf],
         analysed: &[Arc<Analysed>],
+        on: impl Fn(usize) -> usize,
     ) -> Vec<Option<usize>> {
         let mut known: HashMap<_, Vec<usize>> = HashMap::new();
         for (q, own) in self.bodies.iter().enumerate() {
             let Some(inverse) = &own.inverse else { continue };
-            let key = (inverse.rank(), own.keys, own.analysed.as_ref().map(Arc::as_ptr));
+            let key = (on(inverse.rank()), own.keys, own.analysed.as_ref().map(Arc::as_ptr));
             known.entry(key).or_default().push(q);
         }
         let mut find = |(plan, analysed): (&PlanOf, &Arc<Analysed>)| {
@@ -117,18 +130,14 @@ impl Prepared {
                 return None;
             }
             let p = plan.body;
-            let key = (plan.rank, self.bodies[p].keys, Some(Arc::as_ptr(analysed)));
+            let key = (on(plan.rank), self.bodies[p].keys, Some(Arc::as_ptr(analysed)));
             let alike = known.entry(key).or_default();
-            let found = alike.iter().copied().find(|&q| same_stiffness(model, p, q));
+            let found =
+                alike.iter().copied().find(|&q| same_matrix_of(&model.bodies[p].body, &model.bodies[q].body));
             alike.extend(found.is_none().then_some(p));
             found
         };
         plans.iter().zip(analysed).map(&mut find).collect()
-    }
-
-    /// The first body of an equal matrix for every body.
-    pub(super) fn same_matrices(&self, model: &SolvedModel) -> Vec<usize> {
-        classes(self.bodies.len(), |p| self.bodies[p].keys, |p, q| same_stiffness(model, p, q))
     }
 
     /// For every body the body whose K+ it uses: the first equal body that already has K+, otherwise the first equal
@@ -139,7 +148,11 @@ impl Prepared {
             self.bodies[p].carried == self.bodies[q].carried
                 && same_body(&model.bodies[p].body, &model.bodies[q].body)
         };
-        let key = |p: usize| (self.bodies[p].keys, input_key(&model.bodies[p].body));
+        // of a body on another rank the key of its input is in its facts
+        let key = |p: usize| {
+            let body = &model.bodies[p].body;
+            (self.bodies[p].keys, self.lending.is_none().then(|| input_key(body)))
+        };
         let first = classes(self.bodies.len(), key, same);
         let has = |p: usize| self.bodies[p].inverse.is_some();
         let mut ready = HashMap::new();
@@ -151,33 +164,36 @@ impl Prepared {
     }
 
     /// Computes the keys of the matrices; a single body needs none.
-    fn find_keys(&mut self, model: &SolvedModel) -> Result<()> {
+    pub(super) fn find_keys(&mut self, model: &SolvedModel) -> Result<()> {
         if self.bodies.len() < 2 {
             return Ok(());
         }
         let without: Vec<usize> = (0..self.bodies.len()).filter(|&p| self.bodies[p].keys.is_none()).collect();
         let keys = threads::run(model.threads(), without.len(), |k| {
-            let stiffness = model.bodies[without[k]].body.stiffness.as_ref();
-            Ok(stiffness.map(|k| [pattern_key(k), value_key(k)]))
+            let body = &model.bodies[without[k]].body;
+            let there = body.elsewhere.as_ref().map(|of| [of.facts.keys[0], of.facts.keys[1]]);
+            Ok(there.or_else(|| body.stiffness.as_ref().map(|k| [pattern_key(k), value_key(k)])))
         })?;
         without.into_iter().zip(keys).for_each(|(p, keys)| self.bodies[p].keys = keys);
         Ok(())
     }
 
     /// Gives every body the K+ of the body that represents it: what has been `made` on its rank, or was there.
-    fn share(&mut self, representatives: &[usize], ranks: &[usize], made: OnRanks) {
-        for (p, &representative) in representatives.iter().enumerate() {
-            if let Some(inverse) = made.get(&(representative, ranks[p])) {
-                self.bodies[p].inverse = Some(Arc::clone(inverse));
-            } else if p != representative {
-                self.bodies[p].inverse = self.bodies[representative].inverse.clone();
+    fn share(&mut self, representatives: &[usize], ranks: &[usize], mut made: OnRanks) {
+        let of = |p: usize| (representatives[p], ranks[p]);
+        for (p, own) in self.bodies.iter().enumerate() {
+            made.extend(own.inverse.as_ref().map(|inverse| (of(p), Arc::clone(inverse))));
+        }
+        for p in 0..representatives.len() {
+            if self.bodies[p].inverse.is_none() {
+                self.bodies[p].inverse = made.get(&of(p)).cloned();
             }
-            self.bodies[p].analysed = self.bodies[representative].analysed.clone();
+            self.bodies[p].analysed = self.bodies[representatives[p]].analysed.clone();
         }
     }
 
     /// Dual operators for these numbers of distinct rows and factor entries of the bodies. `more`: bytes of factors not made yet.
-    fn operators(
+    pub(super) fn operators(
         &self,
         model: &SolvedModel,
         rows: &[DistinctRows],
@@ -248,20 +264,15 @@ impl Prepared {
     }
 }
 
-fn same_stiffness(model: &SolvedModel, p: usize, q: usize) -> bool {
-    let [a, b] = [p, q].map(|p| model.bodies[p].body.stiffness.as_ref());
-    a.zip(b).is_some_and(|(a, b)| same_matrix(a, b))
-}
-
 /// Entries of a factor before its analysis, of K with so many entries a row: in one dimension twice these, in two and three dimensions
 /// what nested dissection needs.
-fn supposed_entries(k: &Symmetric) -> usize {
-    let (n, entries) = (k.order().max(1) as f64, k.col.len() as f64);
-    (entries * n.cbrt().min(entries / n)) as usize
+fn supposed_entries(body: &Body) -> Option<usize> {
+    let (n, entries) = (body.order.max(1) as f64, body.entries()? as f64);
+    Some((entries * n.cbrt().min(entries / n)) as usize)
 }
 
 /// The first equal member for every member.
-fn classes<K: Eq + Hash>(
+pub(super) fn classes<K: Eq + Hash>(
     count: usize,
     key: impl Fn(usize) -> K,
     same: impl Fn(usize, usize) -> bool,

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::body::{Local, Locals, Seen};
+use crate::body::{Away, Local, Locals, Seen};
 use crate::certificate::{Certificate, Entry};
 use crate::constraints::{FrictionNode, RowKind, RowSet, Taken, Touched};
 use crate::error::Result;
@@ -61,9 +61,12 @@ impl Island {
         self.ranges.last().map_or(0, |range| range.end)
     }
 
-    /// K of its bodies, of a model that has them all here.
-    pub(super) fn matrices<'a>(&'a self, model: &'a SolvedModel) -> Locals<'a> {
+    /// K of its bodies, without K+.
+    pub(super) fn matrices<'a>(&'a self, model: &'a SolvedModel, away: &'a [Option<Away>]) -> Locals<'a> {
         let local = |(k, &p): (usize, &usize)| {
+            if let Some(away) = away.get(k).and_then(Option::as_ref) {
+                return Some(Seen::Away(away, self.touched.on(k)));
+            }
             let body = &model.bodies[p].body;
             Some(Seen::Here(Local::of_matrix(body.k()?, body.without(self.unit), self.touched.on(k))))
         };

@@ -1,13 +1,13 @@
 //! How far loads move their bodies: a length of which right-hand sides may be differences.
 
 use std::cell::OnceCell;
-use std::sync::Arc;
 
 use crate::body::{Locals, Seen};
 use crate::certificate::{led, Beside, Couple, Coupled, Trace, Way};
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::model::{Lengths, SolvedModel};
+use crate::setup::given::OfAway;
 use crate::setup::islands::Island;
 use crate::setup::prepared::Prepared;
 
@@ -16,6 +16,7 @@ type OfIsland<'b> = (&'b Island, Locals<'b>);
 
 /// `of`: each of `count` islands.
 fn lengths<'a, 'b>(
+    prepared: &Prepared,
     model: &'a SolvedModel,
     count: usize,
     of: &dyn Fn(usize) -> Result<OfIsland<'b>>,
@@ -45,26 +46,33 @@ fn lengths<'a, 'b>(
         };
         let held = led(&trace, RowKind::ALL.map(|kind| &island.members(kind).rows), &|_, _| true, 1.0)?;
         let way = |at: usize| Way {
-            load: loads(island.bodies[at]).map(Arc::from),
+            counts: loads(island.bodies[at]).is_some(),
             held: held[island.touched.range(at)].to_vec(),
         };
-        island.bodies.iter().zip(bodies.ask(way, ())?).for_each(|(&p, way)| all[p] = way);
+        let given = prepared.loads(model, (&island.bodies, &bodies))?;
+        island.bodies.iter().zip(bodies.ask(way, &given)?).for_each(|(&p, way)| all[p] = way);
     }
     model.lengths(&all)
 }
 
-/// The lengths of a model that is not set up, whose bodies have their matrices here.
-pub(super) fn first_lengths<'a>(model: &'a SolvedModel, islands: &[Island]) -> Result<Lengths<'a>> {
-    lengths(model, islands.len(), &|k| Ok((&islands[k], islands[k].matrices(model))))
-}
-
 impl Prepared {
+    /// The lengths of a model that is not set up.
+    pub(super) fn first_lengths<'a>(
+        &self,
+        model: &'a SolvedModel,
+        islands: &[Island],
+        away: &[OfAway],
+    ) -> Result<Lengths<'a>> {
+        let of = |k: usize| Ok((&islands[k], islands[k].matrices(model, &away[k])));
+        lengths(self, model, islands.len(), &of)
+    }
+
     /// The lengths of a model that is set up; 0 if nothing depends on them.
     pub fn lengths<'a>(&self, model: &'a SolvedModel) -> Result<Lengths<'a>> {
         let islands = &self.done(model)?.islands;
         if !model.may_contradict() && !islands.iter().any(|ready| ready.rows.some_are_parallel()) {
             return model.lengths(&vec![0.0; model.bodies.len()]);
         }
-        lengths(model, islands.len(), &|k| Ok((&*islands[k].island, self.locals(model, &islands[k])?)))
+        lengths(self, model, islands.len(), &|k| Ok((&*islands[k].island, self.locals(model, &islands[k])?)))
     }
 }

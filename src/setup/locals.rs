@@ -1,14 +1,17 @@
 //! The bodies of an island, each where it is.
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, PoisonError};
 
-use crate::body::{Local, Locals, Seen};
+use crate::body::{HostLoad, Kept, Local, Locals, Seen};
 use crate::certificate::{LoadOfWhole, SizeOfLoad};
 use crate::error::{Error, Kind, Result};
+use crate::linalg::hash::{hash, START};
 use crate::linalg::vector::weighted_norm;
 use crate::model::SolvedModel;
+use crate::setup::given::without_ranks;
 use crate::setup::islands::Island;
-use crate::setup::prepared::Prepared;
+use crate::setup::prepared::{LoadElsewhere, Prepared};
 use crate::setup::ready::Ready;
 
 impl Prepared {
@@ -24,6 +27,7 @@ impl Prepared {
             Ok(Seen::Here(Local {
                 stiffness: body.k().ok_or_else(missing)?,
                 null_space: inverse.kplus.null_space()?,
+                said: body.null_space.as_deref(),
                 soft: inverse.kplus.is_soft(),
                 unit: body.without(*unit),
                 grounded: inverse.grounded.as_deref().ok_or_else(missing)?,
@@ -32,6 +36,33 @@ impl Prepared {
             }))
         };
         Ok(Locals::new(bodies.iter().enumerate().map(seen).collect::<Result<_>>()?, model.threads()))
+    }
+
+    /// The loads of these bodies; one that another rank does not have yet is sent.
+    pub fn loads(
+        &self,
+        model: &SolvedModel,
+        (bodies, locals): (&[usize], &Locals),
+    ) -> Result<Kept<HostLoad>> {
+        let given = |k: usize| model.bodies[bodies[k]].body.load.as_deref();
+        let load = |k: usize| given(k).map(Arc::from);
+        let known = |k: usize| self.bodies[bodies[k]].load.lock().unwrap_or_else(PoisonError::into_inner);
+        let (mut questions, mut new) = (Vec::new(), HashMap::new());
+        for k in 0..bodies.len() {
+            let Some(there) = self.bodies[bodies[k]].there.as_ref() else { continue };
+            let key = given(k).map(|f| hash(START, f.iter().map(|f| f.to_bits())));
+            if known(k).as_ref().is_none_or(|known| known.key != key) {
+                let (asking, name) = there.giving_load(load(k));
+                questions.push((k, asking));
+                new.insert(k, LoadElsewhere { key, name });
+            }
+        }
+        for (k, answer) in self.ask(questions)?.answers::<()>()? {
+            answer.map_err(|e| e.body(bodies[k]))?;
+            *known(k) = new.remove(&k);
+        }
+        let there = |k: usize| Ok(Arc::clone(&known(k).as_ref().ok_or_else(without_ranks)?.name));
+        locals.kept(|k| HostLoad(load(k)), there)
     }
 
     /// `Duals::loads`
@@ -43,9 +74,9 @@ impl Prepared {
             if bodies.iter().all(|&p| parts.only(parts.parts[p].body).is_some()) {
                 continue;
             }
-            let load =
-                |k: usize| SizeOfLoad { load: model.bodies[bodies[k]].body.load.as_deref().map(Arc::from) };
-            let sizes = self.locals(model, ready)?.ask(load, ())?;
+            let locals = self.locals(model, ready)?;
+            let given = self.loads(model, (bodies, &locals))?;
+            let sizes = locals.ask(|_| SizeOfLoad, &given)?;
             bodies.iter().zip(sizes).for_each(|(&p, size)| of_parts[p] = size);
         }
         let of_host = |body: usize| match parts.only(body) {

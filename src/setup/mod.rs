@@ -5,6 +5,7 @@ mod analyses;
 mod build;
 mod execute;
 mod factors;
+mod given;
 mod headroom;
 mod host;
 mod islands;

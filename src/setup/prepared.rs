@@ -1,9 +1,9 @@
 //! Data computed from a model, and the revisions of the model from which they were computed.
 
 use std::collections::HashSet;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
-use crate::body::{Asking, Carried, Elsewhere, GeneralizedInverse, Lending, Owed};
+use crate::body::{Asking, BodyElsewhere, Carried, Elsewhere, GeneralizedInverse, Lending, Owed, Token};
 use crate::certificate::LoadOfWhole;
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
@@ -34,7 +34,11 @@ pub struct PreparedBody {
     pub inverse: Option<Arc<Inverse>>,
     /// `F_p` of the previous rows, with K+ and while there is no dual problem.
     pub operator: Option<Box<Kept>>,
-    /// The rank where its K+ was made.
+    /// The body on another rank.
+    pub there: Option<Arc<BodyElsewhere>>,
+    /// Its load there.
+    pub load: Mutex<Option<LoadElsewhere>>,
+    /// The rank that has the body, or had it with other values.
     pub rank: Option<u32>,
     /// Its carried unknowns: K+ holds them.
     pub carried: Option<Box<Carried>>,
@@ -42,6 +46,13 @@ pub struct PreparedBody {
     pub analysed: Option<Arc<Analysed>>,
     /// Keys of pattern and values, if already computed.
     pub keys: Option<[u64; 2]>,
+}
+
+/// A load that the rank of its body has.
+pub struct LoadElsewhere {
+    /// Of its numbers.
+    pub key: Option<u64>,
+    pub name: Arc<Token>,
 }
 
 /// `K_p+` of the matrix divided by `unit`, the largest power of two that does not exceed its largest diagonal entry, and
@@ -125,18 +136,6 @@ impl Prepared {
         own?.inverse.as_deref()
     }
 
-    /// A setup reads the matrices of bodies.
-    pub fn is_due(&self, model: &SolvedModel) -> bool {
-        !self.is_up_to_date(model) || self.lending.as_ref().is_some_and(Lending::is_over)
-    }
-
-    /// Another rank has the body, and nothing here reads its matrix until the next setup: bodies that are cut are judged here.
-    pub fn is_away(&self, body: usize) -> bool {
-        let is_there = self.bodies[body].inverse.as_ref().is_some_and(|of| of.kplus.elsewhere().is_some());
-        let island = |duals: &Duals| duals.islands[duals.island_of[body]].whole().is_none();
-        is_there && self.duals.as_ref().is_some_and(island)
-    }
-
     /// Drops data of old revisions, except data that can be reused.
     pub fn follow(&mut self, model: &SolvedModel) {
         if self.lending.as_ref().is_some_and(|lending| lending.is_over()) {
@@ -153,20 +152,21 @@ impl Prepared {
             }
             own.keys.take_if(|_| own.of.stiffness != now.stiffness);
             if own.of != now {
-                (own.inverse, own.operator, own.of) = (None, None, now);
+                (own.inverse, own.operator, own.there, own.of) = (None, None, None, now);
+                own.load = Mutex::default();
             }
         }
     }
 
     /// Other ranks serve no longer: what they kept is lost.
     fn take_back(&mut self) {
-        let is_lost =
-            |own: &PreparedBody| own.inverse.as_ref().is_some_and(|of| of.kplus.elsewhere().is_some());
+        let is_lost = |own: &PreparedBody| own.there.is_some();
         if self.bodies.iter().any(is_lost) {
             self.duals = None;
         }
         for own in self.bodies.iter_mut().filter(|own| is_lost(own)) {
-            (own.inverse, own.operator, own.rank) = (None, None, None);
+            (own.inverse, own.operator, own.there, own.rank) = (None, None, None, None);
+            own.load = Mutex::default();
         }
         self.lending = None;
     }

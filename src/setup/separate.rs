@@ -15,19 +15,15 @@ use crate::setup::islands::{law, Island};
 
 const WHAT: &str = "groups of bodies";
 
-/// The islands of a problem, by their first bodies. Rows without entries and rows that never close, `c = +infinity`, are
+/// The island of every body, by their first bodies, and their number. Rows without entries and rows that never close, `c = +infinity`, are
 /// in none of them.
-pub fn islands(model: &SolvedModel) -> Result<Vec<Island>> {
-    let (bodies, offsets) = (model.bodies.len(), &model.offsets);
-    let body_of = |j: usize| offsets[1..].partition_point(|end| *end <= j);
-    let all = [&model.contact, &model.equalities];
-    let touched = all.into_iter().flat_map(|rows| {
+fn groups(model: &SolvedModel, acting: &[usize]) -> Result<(Vec<usize>, usize)> {
+    let body_of = |j: usize| model.offsets[1..].partition_point(|end| *end <= j);
+    let touched = [&model.contact, &model.equalities].into_iter().flat_map(|rows| {
         let finite = (0..rows.len()).filter(|&i| rows.is_finite(i));
         finite.map(move |i| rows.matrix.row(i).map(move |(j, _)| body_of(j)))
     });
-    let _room = headroom(3 * size_of::<usize>() * bodies, WHAT)?;
-    let (mut of_body, mut count) = joined(bodies, touched);
-    let acting = acting(model);
+    let (mut of_body, mut count) = joined(model.bodies.len(), touched);
     if !acting.is_empty() {
         let nodes = acting.iter().map(|&node| unknowns_of(model, node).map(|j| of_body[body_of(j)]));
         let (joint, all) = joined(count, nodes);
@@ -42,6 +38,28 @@ pub fn islands(model: &SolvedModel) -> Result<Vec<Island>> {
         of_body.iter_mut().for_each(|island| *island = joint[*island]);
         count = all;
     }
+    Ok((of_body, count))
+}
+
+/// The bodies in islands with pieces of a body that is cut; empty if none is.
+pub fn beside_pieces(model: &SolvedModel) -> Result<Vec<bool>> {
+    if !(0..model.bodies.len()).any(|p| model.is_piece(p)) {
+        return Ok(Vec::new());
+    }
+    let (of_body, count) = groups(model, &acting(model))?;
+    let mut has_pieces = filled(count, false, WHAT)?;
+    (0..of_body.len()).filter(|p| model.is_piece(*p)).for_each(|p| has_pieces[of_body[p]] = true);
+    Ok(of_body.into_iter().map(|island| has_pieces[island]).collect())
+}
+
+/// The islands of a problem, by their first bodies.
+pub fn islands(model: &SolvedModel) -> Result<Vec<Island>> {
+    let (bodies, offsets) = (model.bodies.len(), &model.offsets);
+    let body_of = |j: usize| offsets[1..].partition_point(|end| *end <= j);
+    let all = [&model.contact, &model.equalities];
+    let _room = headroom(3 * size_of::<usize>() * bodies, WHAT)?;
+    let acting = acting(model);
+    let (of_body, count) = groups(model, &acting)?;
     let mut islands = vec![Island::empty(); count];
     let (mut start, mut shapes) = (filled(bodies, 0, WHAT)?, Shared::default());
     for (island, bodies) in islands.iter_mut().zip(members(count, of_body.iter().copied().zip(0..))) {
@@ -98,8 +116,8 @@ pub fn islands(model: &SolvedModel) -> Result<Vec<Island>> {
         }
     }
     for island in &mut islands {
-        let stiffness = island.bodies.iter().filter_map(|&p| model.bodies[p].body.k());
-        island.unit = power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max));
+        let largest = island.bodies.iter().map(|&p| model.bodies[p].body.largest_diagonal());
+        island.unit = power_of_two_below(largest.fold(0.0, f64::max));
     }
     Ok(islands)
 }

@@ -1,7 +1,6 @@
 //! One island with the data of the host.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use crate::body::{Kept, Locals};
 use crate::certificate::{Data, Lend, Load};
@@ -66,12 +65,10 @@ impl<'a> Case<'a> {
 
     /// The loads of the bodies.
     pub fn loads(&self) -> Result<Kept<Load>> {
-        let load = |k: usize| {
-            let p = self.island().bodies[k];
-            let own = self.model.bodies[p].body.load.as_deref().map(Arc::from);
-            Lend { load: Load { own, whole: self.prepared.load_of_whole(self.model, p) } }
-        };
-        Ok(self.locals()?.make(load, ())?.1)
+        let (locals, bodies) = (self.locals()?, &self.island().bodies);
+        let whole = |k: usize| Lend { whole: self.prepared.load_of_whole(self.model, bodies[k]) };
+        let given = self.prepared.loads(self.model, (bodies, &locals))?;
+        Ok(locals.make(whole, &given)?.1)
     }
 
     /// The data of the island for the certificate, with these loads.

@@ -70,13 +70,16 @@ impl Problem {
         })
     }
 
-    /// Of what other ranks have of parts nothing is kept here.
+    /// Of parts that other ranks have, nothing is kept here.
     fn set_up(&mut self, watch: &mut Watch) -> Result<()> {
         let Self { model, decomposition, prepared, .. } = self;
+        let given = prepared.give(solved(model, decomposition), watch);
+        given.map_err(|e| of_host(model, decomposition, e))?;
+        if let Some(of) = decomposition {
+            of.let_go(prepared.gone(&of.model)?);
+        }
         let ended = prepared.set_up(solved(model, decomposition), watch);
-        ended.map_err(|e| of_host(model, decomposition, e))?;
-        decomposition.iter_mut().for_each(|of| of.let_go(|part| prepared.is_away(part)));
-        Ok(())
+        ended.map_err(|e| of_host(model, decomposition, e))
     }
 
     /// Solves (10)-(11) for the present loads and gaps. An incomplete answer is kept; the report says how good it is. If
@@ -272,14 +275,15 @@ impl Problem {
     pub(super) fn decompose(&mut self) -> Result<()> {
         self.model.check_complete()?;
         self.connected.follow(&self.model)?;
-        let serves = |known: &Decomposition| {
-            known.is_of(&self.model) && (known.has_matrices || !self.prepared.is_due(&known.model))
-        };
+        // of bodies on other ranks the model that is solved has no matrices
+        let lends = self.prepared.lending.as_ref().is_some_and(|lending| !lending.is_over());
+        let serves = |known: &Decomposition| known.is_of(&self.model) && (known.has_matrices || lends);
+        let is_due = lends || Decomposition::is_due(&self.model, &self.connected);
         match &mut self.decomposition {
             Some(known) if serves(known) => known.refresh(&self.model),
-            None if !Decomposition::is_due(&self.model, &self.connected) => Ok(()),
+            None if !is_due => Ok(()),
             _ => {
-                let made = Decomposition::of(&self.model, &self.connected)?;
+                let made = is_due.then(|| Decomposition::of(&self.model, &self.connected)).transpose()?;
                 if !same_bodies(&made, &self.decomposition) {
                     self.prepared.forget();
                 }

@@ -27,7 +27,13 @@ macro_rules! names {
 }
 
 names! {
-    /// `PlanBody`: keep a body and the plan of its K+. Answer: `Planned`.
+    /// [`Give`](super::Give): keep a body. Answer: nothing.
+    Give,
+    /// [`GiveLoad`](super::GiveLoad): keep the load of a body. Answer: nothing.
+    GiveLoad,
+    /// [`Enter`](super::Enter): keep a body in an island. Answer: `Entered`.
+    Enter,
+    /// `PlanBody`: keep the plan of K+ of a body. Answer: `Planned`.
     Plan,
     /// `Follow`: take over a layout. Answer: which of those offered.
     Follow,
@@ -45,7 +51,8 @@ names! {
     Solve,
     /// [`NullSpace`]. Answer: `R_p`.
     NullSpace,
-    /// `Join`: keep a body of an island, and its dual operator. Answer: `Joined`. The names below are questions about such a body (`local::Question`).
+    /// [`Join`](super::Join): keep the part of a body in the dual problem of its island, and its dual operator. Answer: its part of G. The
+    /// names below are questions about a body of an island (`local::Question`).
     Join,
     Put,
     Bring,
@@ -75,6 +82,7 @@ names! {
     Displacement,
     Deformation,
     Rigid,
+    Basis,
     Split,
     Along,
     FreeMotions,

@@ -1,10 +1,12 @@
 //! K+ and dual operators that another rank keeps: their names, and what rank 0 knows and asks of them.
 
 mod asking;
+mod body;
 mod joining;
 
 pub use asking::{ask, Asking, Boundary, Entries, Multiply, Name, NullSpace, Owed, Solve, ABOUT_BODIES};
-pub use joining::{Away, InIsland, Join, Joined, Joining};
+pub use body::{Away, BodyElsewhere, Enter, Entered, Facts, Give, GiveLoad, HostLoad};
+pub use joining::{InIsland, Join, Joined, Joining};
 
 use std::sync::Arc;
 

@@ -29,7 +29,7 @@ impl<Q: Question> Asked<Q> {
         let Self { heading: Heading { body, kept, from, given }, question } = self;
         let member = store.find::<Member>(body)?;
         let answer = |kept: &mut Q::Kept| {
-            Q::Given::read(store, &given, |given| question.answer(&member.local(), kept, given))
+            Q::Given::read(store, &given, |given| question.answer(&member.local()?, kept, given))
         };
         let Some(name) = kept else { return answer(&mut Q::Kept::default()) };
         let first = match from {

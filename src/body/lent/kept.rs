@@ -1,10 +1,13 @@
 //! The answers of a rank that serves.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use crate::body::boundary::boundary;
-use crate::body::elsewhere::{Boundary, Entries, Join, Joined, Multiply, Name, NullSpace, Solve};
+use crate::body::elsewhere::{
+    Boundary, Enter, Entered, Entries, Give, GiveLoad, HostLoad, Join, Joined, Multiply, Name, NullSpace,
+    Solve,
+};
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::given::Stiffness;
 use crate::body::grounded::grounded;
@@ -14,6 +17,7 @@ use crate::body::lent::member::{Member, WithMatrix};
 use crate::body::lent::planned::{Analyse, Analysis, Factorise, Follow, PlanBody, PlanHere, Planned};
 use crate::body::lent::Made;
 use crate::body::store::Store;
+use crate::body::Body;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Csr, Operator, Packed};
 use crate::platform::memory::zeros;
@@ -117,6 +121,9 @@ impl Bodies {
 
     fn task(&self, name: Name, from: &mut &[u8]) -> Result<Task> {
         Ok(match name {
+            Name::Give => Task::Give(Wire::take(from)?),
+            Name::GiveLoad => Task::GiveLoad(Wire::take(from)?),
+            Name::Enter => Task::Enter(Wire::take(from)?),
             Name::Plan => Task::Plan(Wire::take(from)?),
             Name::Follow => Task::Follow(Wire::take(from)?),
             Name::Analyse => Task::Analyse(Wire::take(from)?),
@@ -137,6 +144,11 @@ impl Bodies {
         }
         let form = |name| self.store.find::<Form>(name);
         match task {
+            Task::Give(Give { name, body }) => sent(Ok(self.store.keep(name, body))),
+            Task::GiveLoad(GiveLoad { name, load }) => {
+                sent(Ok(self.store.keep(name, RwLock::new(HostLoad(load)))))
+            }
+            Task::Enter(of) => sent(self.enter(of)),
             Task::Plan(of) => sent(self.plan(of)),
             Task::Follow(of) => sent(self.follow(of)),
             Task::Analyse(of) => sent(self.analyse(of)),
@@ -161,7 +173,15 @@ impl Bodies {
         self.store.find(name)
     }
 
+    fn enter(&self, of: Enter) -> Result<Entered> {
+        let (name, body) = (of.member, self.store.find::<Body>(of.body)?);
+        let (member, entered) = Member::new(body, of)?;
+        self.store.keep(name, member);
+        Ok(entered)
+    }
+
     fn plan(&self, PlanBody { plan: name, body, with }: PlanBody) -> Result<Planned> {
+        let body = self.store.find::<Body>(body)?;
         let plan = body.plan(with)?;
         let told = Planned::from(&plan);
         self.store.keep(name, PlanHere::new(body, plan));
@@ -234,14 +254,17 @@ impl Bodies {
             let form = Form::of(&with.kplus, &of.rows, new.explicit, new.rows)?;
             self.store.keep(new.name, form);
         }
-        let (member, joined) = Member::new(with, of)?;
+        let (member, coarse) = self.store.find::<Member>(name)?.joined(with, of)?;
         self.store.keep(name, member);
-        Ok(joined)
+        Ok(coarse)
     }
 }
 
 /// A question with its data.
 enum Task {
+    Give(Give),
+    GiveLoad(GiveLoad),
+    Enter(Enter),
     Plan(PlanBody),
     Follow(Follow),
     Analyse(Analyse),

@@ -15,12 +15,10 @@ pub use planned::{Analysis, NewKplus, PlanAway, Planned};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
 
-use crate::body::elsewhere::{ask, Asking, Name, Owed};
-use crate::body::planning::Planning;
+use crate::body::elsewhere::{ask, Asking, BodyElsewhere, Facts, Owed};
 use crate::body::Body;
 use crate::error::Result;
-use crate::ranks::{Ranks, Token, Traffic};
-use planned::PlanBody;
+use crate::ranks::{Ranks, Traffic};
 
 /// The ranks to which bodies may be lent.
 pub struct Lending {
@@ -72,10 +70,8 @@ impl Lending {
         ask(&self.ranks, questions)
     }
 
-    /// The question for the plan of a body, which is sent, and the name of the plan.
-    pub fn planning(&self, rank: usize, body: &Body, with: Planning) -> (Asking, Token) {
-        let token = self.ranks.token(rank);
-        let of = PlanBody { plan: token.number, body: body.without_load(), with };
-        (Asking::new(rank, Name::Plan, of), token)
+    /// The question that gives a body to a rank, and what stands for it here.
+    pub fn giving(&self, rank: usize, body: &Body, facts: Facts) -> (Asking, BodyElsewhere) {
+        BodyElsewhere::giving(&self.ranks, rank, body, facts)
     }
 }

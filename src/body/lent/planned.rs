@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::body::elsewhere::{Asking, Elsewhere, Name};
+use crate::body::elsewhere::{Asking, BodyElsewhere, Elsewhere, Name};
 use crate::body::layout::{Layout, Symbolic};
 use crate::body::plan::Plan;
 use crate::body::planning::Planning;
@@ -10,10 +10,10 @@ use crate::body::Body;
 use crate::error::{Error, Kind, Result};
 use crate::ranks::{wire_struct, Token};
 
-/// Keeps the plan of this body, which is sent. Answer: `Planned`.
+/// Keeps the plan of a body. Answer: `Planned`.
 pub(super) struct PlanBody {
     pub plan: u64,
-    pub body: Body,
+    pub body: u64,
     pub with: Planning,
 }
 
@@ -64,7 +64,7 @@ wire_struct!(Factorise { kplus, plan, symbolic, further, of, rounded });
 
 /// A plan that another rank keeps.
 pub struct PlanAway {
-    name: Token,
+    name: Arc<Token>,
     pub of: Planned,
 }
 
@@ -76,7 +76,7 @@ pub struct NewKplus {
 
 /// A plan where its body is, until it is executed.
 pub(super) struct PlanHere {
-    pub body: Body,
+    pub body: Arc<Body>,
     plan: Mutex<Option<Plan>>,
 }
 
@@ -92,8 +92,17 @@ impl From<&Plan> for Planned {
     }
 }
 
+impl BodyElsewhere {
+    /// The question for the plan of the body, and its name.
+    pub fn planning(&self, with: Planning) -> (Asking, Arc<Token>) {
+        let token = Arc::new(self.token());
+        let of = PlanBody { plan: token.number, body: self.name.number, with };
+        (Asking::new(token.rank, Name::Plan, of), token)
+    }
+}
+
 impl PlanAway {
-    pub fn new(name: Token, of: Planned) -> Self {
+    pub fn new(name: Arc<Token>, of: Planned) -> Self {
         Self { name, of }
     }
 
@@ -123,7 +132,7 @@ impl PlanAway {
 }
 
 impl PlanHere {
-    pub fn new(body: Body, plan: Plan) -> Self {
+    pub fn new(body: Arc<Body>, plan: Plan) -> Self {
         Self { body, plan: Mutex::new(Some(plan)) }
     }
 

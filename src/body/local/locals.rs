@@ -12,6 +12,7 @@ use crate::body::local::{Heading, Local, Question};
 use crate::error::Result;
 use crate::linalg::Symmetric;
 use crate::platform::{stopwatch, threads};
+use crate::ranks::Token;
 
 /// The bodies of an island.
 #[derive(Clone)]
@@ -124,6 +125,19 @@ impl<'a> Locals<'a> {
             cells[p].change(|kept| q.answer(self.bodies[p].here()?, kept, given).map(answered::<Q>))
         };
         self.each(question, heading, own)
+    }
+
+    /// What is known here of bodies that are here, and what has these names where the others are.
+    pub fn kept<T>(
+        &self,
+        here: impl Fn(usize) -> T,
+        there: impl Fn(usize) -> Result<Arc<Token>>,
+    ) -> Result<Kept<T>> {
+        let of = |(p, body): (usize, &Seen)| match body.away() {
+            Some(_) => Ok(OfBody::Elsewhere(there(p)?)),
+            None => Ok(OfBody::Here(here(p))),
+        };
+        Ok(Kept::wherever(self.bodies.iter().enumerate().map(of).collect::<Result<_>>()?))
     }
 
     /// The bodies that are elsewhere are asked about first, by one request to each rank, and answered last.

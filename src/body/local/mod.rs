@@ -16,6 +16,7 @@ pub use seen::Seen;
 use crate::body::elsewhere::Name;
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::given::Stiffness;
+use crate::body::null_space::NullSpaceInput;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Csr, Matrix};
 use crate::platform::memory::zeros;
@@ -28,6 +29,8 @@ pub struct Local<'a> {
     pub stiffness: Stiffness<'a>,
     /// R_p, n x r, no unit, with `R'DR = unit`.
     pub null_space: &'a Matrix,
+    /// The null space as the host has given it.
+    pub said: Option<&'a NullSpaceInput>,
     /// K has positive or negative stiffness along motions of R, which are exact: `(K R)'u` is part of their balance.
     pub soft: bool,
     /// Force / length, also the metric of dofs without stiffness.
@@ -87,7 +90,16 @@ impl<'a> Local<'a> {
     /// A body of which only K is asked.
     pub fn of_matrix(stiffness: Stiffness<'a>, unit: f64, touched: &'a [u32]) -> Self {
         const NONE: &Matrix = &Matrix { rows: 0, cols: 0, data: Vec::new() };
-        Self { stiffness, null_space: NONE, soft: false, unit, grounded: &[], touched, dual: None }
+        Self {
+            stiffness,
+            null_space: NONE,
+            said: None,
+            soft: false,
+            unit,
+            grounded: &[],
+            touched,
+            dual: None,
+        }
     }
 
     pub fn order(&self) -> usize {

@@ -6,9 +6,8 @@ mod measured;
 pub use measured::{Measure, Measured};
 
 use std::collections::HashSet;
-use std::sync::Arc;
 
-use crate::body::{wire_struct, wire_unit, Local, Name, Question};
+use crate::body::{wire_struct, wire_unit, HostLoad, Local, Name, Question};
 use crate::certificate::{acting, Load, LoadOfWhole, NOISE};
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm_max, weighted_norm};
@@ -17,13 +16,12 @@ use crate::platform::memory::{copied, filled, zeros};
 
 const WHAT: &str = "the certificate";
 
-wire_unit!(Largest, LoadOf);
+wire_unit!(Largest, LoadOf, SizeOfLoad);
 wire_struct!(Told { unit, without, metric, led, carried, push, push_terms, passed_on });
 wire_struct!(Fit { told });
 wire_struct!(Fitted { amplitudes, motions, unit, grounded, load, sizes });
 wire_struct!(Sizes { load, push, all, terms, led, noise, moved });
-wire_struct!(SizeOfLoad { load });
-wire_struct!(Lend { load });
+wire_struct!(Lend { whole });
 
 /// What rows do to a body, at the t unknowns that they touch.
 #[derive(Clone, Default)]
@@ -162,20 +160,18 @@ impl Question for LoadOf {
 }
 
 /// Asks for the size of a load, for the body of the host of which the body is a part.
-pub struct SizeOfLoad {
-    pub load: Option<Arc<[f64]>>,
-}
+pub struct SizeOfLoad;
 
 impl Question for SizeOfLoad {
     const NAME: Name = Name::SizeOfLoad;
     type Answer = LoadOfWhole;
     type Kept = ();
-    type Given = ();
+    type Given = (HostLoad,);
 
-    fn answer(self, body: &Local, _: &mut (), _: ()) -> Result<LoadOfWhole> {
+    fn answer(self, body: &Local, _: &mut (), HostLoad(load): &HostLoad) -> Result<LoadOfWhole> {
         let dual = body.dual()?;
         let (mut own, mut largest) = (Vec::new(), 0.0);
-        for (i, f) in acting(self.load.as_deref().unwrap_or_default(), body.grounded) {
+        for (i, f) in acting(load.as_deref().unwrap_or_default(), body.grounded) {
             own.push(f / (dual.metric[i] * dual.island).sqrt());
             largest = f64::max(largest, f.abs());
         }
@@ -183,19 +179,19 @@ impl Question for SizeOfLoad {
     }
 }
 
-/// Keeps the load of a body.
+/// Keeps the load of a body with that of the body of the host of which it is a part.
 pub struct Lend {
-    pub load: Load,
+    pub whole: LoadOfWhole,
 }
 
 impl Question for Lend {
     const NAME: Name = Name::Lend;
     type Answer = ();
     type Kept = Load;
-    type Given = ();
+    type Given = (HostLoad,);
 
-    fn answer(self, _: &Local, load: &mut Load, _: ()) -> Result<()> {
-        *load = self.load;
+    fn answer(self, _: &Local, load: &mut Load, HostLoad(own): &HostLoad) -> Result<()> {
+        *load = Load { own: own.clone(), whole: self.whole };
         Ok(())
     }
 }

@@ -197,6 +197,7 @@ impl DenseModel {
             bodies.push(Seen::Here(Local {
                 stiffness: (&matrices[p]).into(),
                 null_space: &spaces[p],
+                said: None,
                 soft: false,
                 unit: part.unit(),
                 grounded: &grounded[p],

@@ -176,6 +176,7 @@ impl Whole {
             bodies.push(Seen::Here(Local {
                 stiffness,
                 null_space: own.null_space.vectors()?,
+                said: None,
                 soft: own.soft,
                 unit: if largest > 0.0 { power_of_two_below(largest) } else { self.island.unit },
                 grounded: &own.grounded,

@@ -9,5 +9,5 @@ pub use corrected::{
     Added, Begin, Correct, Deformation, Displacement, Point, PointAtRows, Residual, Shift, Strained,
 };
 pub use displaced::{Displace, FromLoad, Loaded, OfLoad, Scale, Slide, Turn};
-pub use motions::{Along, Energy, FreeMotions, FreeMotionsAtRows, Negate, Place, Rigid, Split};
+pub use motions::{Along, Basis, Energy, FreeMotions, FreeMotionsAtRows, Negate, Place, Rigid, Split};
 pub use sizes::{Left, Proof, Sizes, SizesLeft, SizesOfForces, Take, Unheld, Work};

@@ -1,6 +1,6 @@
 //! Motions of a body: the rigid part of u, slides, free motions, and motions along which the energy may fall.
 
-use crate::body::{wire_struct, wire_unit, Local, Name, Question};
+use crate::body::{wire_struct, wire_unit, Local, Modes, Name, NullSpaceInput, Question};
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, weighted_norm};
@@ -11,7 +11,7 @@ use crate::solve::local::displaced::turn;
 
 const WHAT: &str = "a motion";
 
-wire_unit!(Rigid, Split, Energy, Negate);
+wire_unit!(Rigid, Basis, Split, Energy, Negate);
 wire_struct!(Parted { at_rows, slides });
 wire_struct!(Along { a });
 wire_struct!(Moved { v, size, loose });
@@ -31,6 +31,29 @@ impl Question for Rigid {
 
     fn answer(self, body: &Local, _: &mut (), u: &Vec<f64>) -> Result<Vec<f64>> {
         amplitudes(body, u)
+    }
+}
+
+/// Asks for T with `R_host = R T`, r x r: `R'D R_host`, as `R'DR = I`, over the modes of the dual; without a null space of the host
+/// `R_host` is R.
+pub struct Basis;
+
+impl Question for Basis {
+    const NAME: Name = Name::Basis;
+    type Answer = Matrix;
+    type Kept = ();
+    type Given = ();
+
+    fn answer(self, body: &Local, _: &mut (), (): ()) -> Result<Matrix> {
+        let modes = body.null_space.cols;
+        let mut t = Matrix::zeros(modes, modes)?;
+        (0..modes).try_for_each(|j| Ok(t.set(j, j, body.dual()?.size)))?;
+        if let Some(NullSpaceInput { vectors, .. }) = body.said.filter(|said| said.modes == Modes::Exact) {
+            for j in 0..vectors.cols.min(modes) {
+                t.col_mut(j).copy_from_slice(&amplitudes(body, vectors.col(j))?);
+            }
+        }
+        Ok(t)
     }
 }
 

@@ -22,7 +22,16 @@ fn with_bodies<T>(of: &[OfBody], work: impl FnOnce(&Locals, &Touched) -> T) -> T
         let (null_space, metric, grounded) = of[p];
         let dual = LocalDual { kplus: &kplus[p], rows: &rows, metric, island: 1.0, by: 1.0, size: 1.0 };
         let (stiffness, touched, dual) = ((&matrices[p]).into(), touched.on(p), Some(dual));
-        Seen::Here(Local { stiffness, null_space, soft: false, unit: 1.0, grounded, touched, dual })
+        Seen::Here(Local {
+            stiffness,
+            null_space,
+            said: None,
+            soft: false,
+            unit: 1.0,
+            grounded,
+            touched,
+            dual,
+        })
     };
     work(&Locals::new((0..of.len()).map(body).collect(), 1), &touched)
 }

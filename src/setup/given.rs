@@ -1,0 +1,220 @@
+//! Bodies given to other ranks before anything is made of them, and what is made of bodies wherever they are.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use crate::body::{same_body, same_matrix_of, Asking, Away, BodyElsewhere, Entered, Facts, Token};
+use crate::dual::DistinctRows;
+use crate::error::{Error, Kind, Result};
+use crate::model::SolvedModel;
+use crate::platform::stopwatch;
+use crate::platform::threads;
+use crate::progress::{SetupPart, Watch};
+use crate::ranks::Wire;
+use crate::setup::factors::classes;
+use crate::setup::islands::Island;
+use crate::setup::lending::{ranks_of, Cost};
+use crate::setup::prepared::Prepared;
+use crate::setup::separate::beside_pieces;
+
+/// The bodies of an island that are on other ranks; empty if there are none.
+pub type OfAway = Box<[Option<Away>]>;
+
+impl Prepared {
+    /// Gives bodies to other ranks if a setup is due.
+    pub fn give(&mut self, model: &SolvedModel, watch: &Watch) -> Result<()> {
+        self.follow(model);
+        let all = 0..model.bodies.len();
+        for (own, given) in self.bodies.iter_mut().zip(&model.bodies) {
+            own.there = own.there.take().or_else(|| given.body.elsewhere.clone());
+        }
+        if self.lending.is_none() || self.is_up_to_date(model) {
+            return Ok(());
+        }
+        self.find_keys(model)?;
+        let key = |p: usize| self.bodies[p].keys;
+        let bodies = |p: usize, q: usize| [p, q].map(|p| &model.bodies[p].body);
+        let equal = classes(all.len(), key, |p, q| {
+            let [a, b] = bodies(p, q);
+            same_body(a, b)
+        });
+        let alike = classes(all.len(), key, |p, q| {
+            let [a, b] = bodies(p, q);
+            same_matrix_of(a, b)
+        });
+        let ranks = self.lend(model, (&equal, &alike))?;
+        let mut there: HashMap<(usize, usize), Arc<BodyElsewhere>> = HashMap::new();
+        for p in all.clone() {
+            there.extend(self.bodies[p].there.as_ref().map(|of| ((equal[p], ranks[p]), Arc::clone(of))));
+        }
+        let new: Vec<usize> =
+            all.clone().filter(|p| ranks[*p] > 0 && self.bodies[*p].there.is_none()).collect();
+        let facts = threads::run(model.threads(), new.len(), |k| Ok(Facts::of(&model.bodies[new[k]].body)))?;
+        let mut questions = Vec::new();
+        for (&p, facts) in new.iter().zip(facts) {
+            let (Some(lending), Some(facts)) = (&self.lending, facts) else { continue };
+            there.entry((equal[p], ranks[p])).or_insert_with(|| {
+                let (asking, of) = lending.giving(ranks[p], &model.bodies[p].body, facts);
+                questions.push((p, asking));
+                Arc::new(of)
+            });
+        }
+        let owed = watch.stops.interrupt.during(|| self.ask(questions))?;
+        for (p, answer) in owed.answers::<()>()? {
+            answer.map_err(|e| e.body(p))?;
+        }
+        for p in new {
+            self.bodies[p].there = there.get(&(equal[p], ranks[p])).cloned();
+        }
+        Ok(())
+    }
+
+    /// What other ranks have in place of bodies, which need not be here. Parts in islands with pieces are needed here, too.
+    pub fn gone(&self, model: &SolvedModel) -> Result<Vec<(usize, Arc<BodyElsewhere>)>> {
+        let there = self.bodies.iter().enumerate().filter_map(|(p, own)| Some((p, own.there.clone()?)));
+        let mut gone: Vec<_> = there.collect();
+        if !gone.is_empty() {
+            let stays = beside_pieces(model)?;
+            gone.retain(|(p, _)| stays.get(*p) != Some(&true));
+        }
+        Ok(gone)
+    }
+
+    /// The rank that has a body.
+    pub(super) fn rank(&self, p: usize) -> usize {
+        self.bodies[p].there.as_ref().map_or(0, |of| of.name.rank)
+    }
+
+    /// The rank of every body. `equal`, `alike`: the first equal body of each, and the first of an equal matrix. Bodies of equal matrices
+    /// that are not equal stay together.
+    fn lend(&mut self, model: &SolvedModel, (equal, alike): (&[usize], &[usize])) -> Result<Vec<usize>> {
+        let Some(lending) = &self.lending else { return Ok(vec![0; equal.len()]) };
+        let has = |p: usize| self.bodies[p].there.is_some() || self.bodies[p].inverse.is_some();
+        let of_class = (0..equal.len()).rev().filter(|p| has(*p)).map(|p| (equal[p], self.rank(p)));
+        let of_class: HashMap<usize, usize> = of_class.collect();
+        let is_fixed = |p: usize| has(p) || of_class.contains_key(&equal[p]);
+        let given = |p: usize| {
+            let own = has(p).then(|| self.rank(p));
+            own.or(of_class.get(&equal[p]).copied()).or(self.bodies[p].rank.map(|rank| rank as usize))
+        };
+        let given: Vec<Option<usize>> = (0..equal.len()).map(given).collect();
+        // no row of the dual is known yet: one for each unknown that a row touches
+        let rows: Vec<DistinctRows> =
+            touched(model).into_iter().map(|rows| DistinctRows { rows, places: rows }).collect();
+        let operators = self.operators(model, &rows, &self.entries(model, &[], &HashMap::new()), 0);
+        let assembly = operators.weights();
+        let cost = |p: usize| {
+            let entries = model.bodies[p].body.stiffness.as_ref()?.col.len();
+            let bytes = (entries * (size_of::<f64>() + size_of::<u32>())) as f64;
+            Some(Cost { work: operators.sizes[p].factorisation() + assembly[p], bytes })
+        };
+        let costs: Vec<Option<Cost>> = (0..equal.len()).map(cost).collect();
+        let mut ranks = ranks_of(lending.size(), &given, &costs, lending.all);
+        for p in (0..ranks.len()).filter(|p| !is_fixed(*p)) {
+            if equal[alike[p]] != equal[p] {
+                ranks[p] = ranks[alike[p]];
+            }
+        }
+        let new = (0..ranks.len()).filter(|p| given[*p].is_none());
+        lending.count(new.clone().count(), new.filter(|p| ranks[*p] > 0).count());
+        self.bodies.iter_mut().zip(&ranks).for_each(|(own, rank)| own.rank = Some(*rank as u32));
+        Ok(ranks)
+    }
+
+    /// Tells other ranks where rows touch their bodies: of every island the bodies that are not here.
+    pub(super) fn enter(
+        &self,
+        model: &SolvedModel,
+        islands: &[Island],
+        watch: &Watch,
+    ) -> Result<Vec<OfAway>> {
+        let (mut questions, mut names) = (Vec::new(), HashMap::new());
+        for island in islands {
+            for (k, &p) in island.bodies.iter().enumerate() {
+                let Some(there) = &self.bodies[p].there else { continue };
+                let unit = model.bodies[p].body.without(island.unit);
+                let (asking, name) = there.entering(island.touched.on(k), unit);
+                questions.push((p, asking));
+                names.insert(p, (name, unit));
+            }
+        }
+        let owed = watch.stops.interrupt.during(|| self.ask(questions))?;
+        let mut entered = HashMap::new();
+        for (p, answer) in owed.answers::<Entered>()? {
+            let (name, unit) = names.remove(&p).ok_or_else(without_ranks)?;
+            let there = self.bodies[p].there.as_ref().ok_or_else(without_ranks)?;
+            let order = model.bodies[p].body.order;
+            entered.insert(p, there.entered(name, order, unit, answer.map_err(|e| e.body(p))?));
+        }
+        let of_island = |island: &Island| match island.bodies.iter().any(|p| entered.contains_key(p)) {
+            true => island.bodies.iter().map(|p| entered.remove(p)).collect(),
+            false => Box::default(),
+        };
+        Ok(islands.iter().map(of_island).collect())
+    }
+
+    /// Makes something of each of these bodies, with the end of this part of the setup: another rank is asked about those with a question,
+    /// the others are `here`, on threads. The error of the first body counts.
+    pub(super) fn wherever<A: Wire, T: Send>(
+        &self,
+        (model, bodies): (&SolvedModel, &[usize]),
+        asking: impl Fn(usize) -> Option<(Asking, Arc<Token>)>,
+        here: impl Fn(usize) -> Result<T> + Sync,
+        there: impl Fn(Arc<Token>, A) -> T,
+        (watch, until): (&mut Watch, f64),
+    ) -> Result<Vec<T>> {
+        let (mut questions, mut names, mut own) = (Vec::new(), HashMap::new(), Vec::new());
+        for k in 0..bodies.len() {
+            match asking(k) {
+                Some((asking, name)) => {
+                    questions.push((k, asking));
+                    names.insert(k, name);
+                }
+                None => own.push(k),
+            }
+        }
+        let owed = watch.stops.interrupt.during(|| self.ask(questions))?;
+        let weights =
+            own.iter().map(|k| model.bodies[bodies[*k]].body.entries().unwrap_or(1) as f64).collect();
+        let part = SetupPart::of(model.threads(), weights, until);
+        let mut made: Vec<Option<T>> = bodies.iter().map(|_| None).collect();
+        let work = |i: usize| here(own[i]).map_err(|e| e.body(bodies[own[i]]));
+        let take = |i: usize, of| made[own[i]] = Some(of);
+        let mut ended = stopwatch::aside(|| watch.every_body(&part, work, take));
+        for (k, answer) in owed.answers::<A>()? {
+            let name = names.remove(&k).ok_or_else(without_ranks)?;
+            match answer {
+                Ok(of) => made[k] = Some(there(name, of)),
+                Err(error) => ended = first_of_bodies(ended, error.body(bodies[k])),
+            }
+        }
+        ended?;
+        made.into_iter().map(|of| of.ok_or_else(without_ranks)).collect()
+    }
+}
+
+/// Of each body the number of its unknowns that rows touch.
+fn touched(model: &SolvedModel) -> Vec<usize> {
+    let all = [&model.contact, &model.equalities, &model.friction.rows].into_iter();
+    let mut touched: Vec<usize> = all
+        .flat_map(|rows| (0..rows.len()).filter(|i| rows.is_finite(*i)).flat_map(|i| rows.matrix.row(i)))
+        .map(|(j, _)| j)
+        .collect();
+    touched.sort_unstable();
+    touched.dedup();
+    let before = |j: usize| touched.partition_point(|i| *i < j);
+    (0..model.bodies.len()).map(|p| before(model.range(p).end) - before(model.range(p).start)).collect()
+}
+
+/// Of two failures that of the first body.
+pub(super) fn first_of_bodies(a: Result<()>, b: Error) -> Result<()> {
+    let body = |error: &Error| error.place.body.unwrap_or(0);
+    match a {
+        Err(a) if body(&a) <= body(&b) => Err(a),
+        _ => Err(b),
+    }
+}
+
+pub(super) fn without_ranks() -> Error {
+    Error::new(Kind::Internal, "a body is on a rank that does not have it")
+}
