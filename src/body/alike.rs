@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use crate::body::elsewhere::Facts;
 use crate::body::null_space::NullSpaceInput;
 use crate::body::rigid_modes::Coordinates;
 use crate::body::Body;
@@ -33,11 +32,7 @@ fn alike(a: &Body, b: &Body, of: Range<usize>, same: impl Fn(&Symmetric, &Symmet
     if let (Some(k), Some(l)) = (&a.stiffness, &b.stiffness) {
         return same(k, l);
     }
-    let keys = |body: &Body| match &body.elsewhere {
-        Some(there) => Some(there.facts.keys),
-        None => Facts::of(body).map(|facts| facts.keys),
-    };
-    a.order == b.order && keys(a).zip(keys(b)).is_some_and(|(a, b)| a[of.clone()] == b[of])
+    a.order == b.order && a.keys().zip(b.keys()).is_some_and(|(a, b)| a[of.clone()] == b[of])
 }
 
 pub fn same_matrix(a: &Symmetric, b: &Symmetric) -> bool {
@@ -86,8 +81,12 @@ pub fn input_key(body: &Body) -> u64 {
     body.coordinates.as_ref().map_or(key, |given| some(key, given.places().as_flattened()))
 }
 
-/// Hash key of all the input that [`same_body`] compares besides the matrix.
-pub fn input_keys(body: &Body) -> u64 {
+/// Hash keys of the pattern of K, of its values, and of all other input that [`same_body`] compares.
+pub fn keys(k: &Symmetric, body: &Body) -> [u64; 3] {
+    [pattern_key(k), value_key(k), whole_input_key(body)]
+}
+
+fn whole_input_key(body: &Body) -> u64 {
     let numbers = |key: u64, values: &[f64]| hash(key, values.iter().map(|v| v.to_bits()));
     let words = |key: u64, words: &[u64]| hash(key, words.iter().copied());
     let mut key = words(START, &[body.coordinate_modes as u64]);

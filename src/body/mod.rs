@@ -42,8 +42,9 @@ mod storage;
 mod store;
 mod values;
 
-pub use crate::ranks::Token;
 pub(crate) use crate::ranks::{wire_struct, wire_unit};
+pub use crate::ranks::{Token, Wire};
+use alike::keys;
 pub use alike::{
     input_key, pattern_key, same_body, same_matrix, same_matrix_of, same_pattern, same_pattern_of,
     same_vectors, value_key,
@@ -157,6 +158,12 @@ impl Body {
             Some(there) => there.facts.last_digit,
             None => self.coordinates.as_ref().map_or(0.0, |given| given.last_digit()),
         }
+    }
+
+    /// Of the pattern of its matrix, of the values, and of what else the host has told ([`Facts`]); none if the host keeps the entries.
+    fn keys(&self) -> Option<[u64; 3]> {
+        let there = self.elsewhere.as_ref().map(|there| there.facts.keys);
+        there.or_else(|| Some(keys(self.stiffness.as_deref()?, self)))
     }
 
     /// Nothing but the load remains of a body that another rank has.

@@ -1,6 +1,7 @@
 //! Hash keys of lists of numbers: equal for equal lists, rarely equal for different lists; and values kept once by their keys.
 
 use std::collections::hash_map::{Entry, HashMap};
+use std::hash::Hash;
 use std::sync::Arc;
 
 pub const START: u64 = 0xcbf2_9ce4_8422_2325;
@@ -37,4 +38,20 @@ impl<T> Shared<T> {
 /// Equal bit by bit, including the sign of zero.
 pub fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}
+/// The first equal member for every member.
+pub fn classes<K: Eq + Hash>(
+    count: usize,
+    key: impl Fn(usize) -> K,
+    same: impl Fn(usize, usize) -> bool,
+) -> Vec<usize> {
+    let mut first_of: HashMap<K, Vec<usize>> = HashMap::new();
+    let class = |p: usize| {
+        let firsts = first_of.entry(key(p)).or_default();
+        firsts.iter().copied().find(|&q| same(p, q)).unwrap_or_else(|| {
+            firsts.push(p);
+            p
+        })
+    };
+    (0..count).map(class).collect()
 }

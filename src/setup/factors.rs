@@ -3,13 +3,13 @@
 //! values on its old pattern keeps its analysis.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
-use std::hash::Hash;
 use std::sync::Arc;
 use std::time::Instant;
 
 use crate::body::{input_key, pattern_key, same_body, same_matrix_of, value_key, Body};
 use crate::dual::{DistinctRows, Size};
 use crate::error::Result;
+use crate::linalg::hash::classes;
 use crate::model::SolvedModel;
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, Watch};
@@ -269,21 +269,4 @@ impl Prepared {
 fn supposed_entries(body: &Body) -> Option<usize> {
     let (n, entries) = (body.order.max(1) as f64, body.entries()? as f64);
     Some((entries * n.cbrt().min(entries / n)) as usize)
-}
-
-/// The first equal member for every member.
-pub(super) fn classes<K: Eq + Hash>(
-    count: usize,
-    key: impl Fn(usize) -> K,
-    same: impl Fn(usize, usize) -> bool,
-) -> Vec<usize> {
-    let mut first_of: HashMap<K, Vec<usize>> = HashMap::new();
-    let class = |p: usize| {
-        let firsts = first_of.entry(key(p)).or_default();
-        firsts.iter().copied().find(|&q| same(p, q)).unwrap_or_else(|| {
-            firsts.push(p);
-            p
-        })
-    };
-    (0..count).map(class).collect()
 }

@@ -3,15 +3,14 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::body::{same_body, same_matrix_of, Asking, Away, BodyElsewhere, Entered, Facts, Token};
+use crate::body::{same_body, same_matrix_of, Asking, Away, BodyElsewhere, Entered, Facts, Token, Wire};
 use crate::dual::DistinctRows;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::hash::classes;
 use crate::model::SolvedModel;
 use crate::platform::stopwatch;
 use crate::platform::threads;
 use crate::progress::{SetupPart, Watch};
-use crate::ranks::Wire;
-use crate::setup::factors::classes;
 use crate::setup::islands::Island;
 use crate::setup::lending::{ranks_of, Cost};
 use crate::setup::prepared::Prepared;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::body::alike::{input_keys, pattern_key, value_key};
+use crate::body::alike::keys;
 use crate::body::elsewhere::asking::{Asking, Name};
 use crate::body::Body;
 use crate::ranks::{wire_struct, Ranks, Token};
@@ -88,9 +88,14 @@ impl Facts {
     /// None for a body without a matrix here.
     pub fn of(body: &Body) -> Option<Self> {
         let k = body.stiffness.as_deref()?;
-        let keys = [pattern_key(k), value_key(k), input_keys(body)];
         let (length, last_digit) = (body.length(), body.last_digit());
-        Some(Self { entries: k.col.len(), largest: k.largest_diagonal(), length, last_digit, keys })
+        Some(Self {
+            entries: k.col.len(),
+            largest: k.largest_diagonal(),
+            length,
+            last_digit,
+            keys: keys(k, body),
+        })
     }
 }
 

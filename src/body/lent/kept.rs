@@ -144,9 +144,13 @@ impl Bodies {
         }
         let form = |name| self.store.find::<Form>(name);
         match task {
-            Task::Give(Give { name, body }) => sent(Ok(self.store.keep(name, body))),
+            Task::Give(Give { name, body }) => {
+                self.store.keep(name, body);
+                sent(Ok(()))
+            }
             Task::GiveLoad(GiveLoad { name, load }) => {
-                sent(Ok(self.store.keep(name, RwLock::new(HostLoad(load)))))
+                self.store.keep(name, RwLock::new(HostLoad(load)));
+                sent(Ok(()))
             }
             Task::Enter(of) => sent(self.enter(of)),
             Task::Plan(of) => sent(self.plan(of)),

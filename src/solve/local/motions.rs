@@ -45,9 +45,9 @@ impl Question for Basis {
     type Given = ();
 
     fn answer(self, body: &Local, _: &mut (), (): ()) -> Result<Matrix> {
-        let modes = body.null_space.cols;
+        let (modes, size) = (body.null_space.cols, body.dual()?.size);
         let mut t = Matrix::zeros(modes, modes)?;
-        (0..modes).try_for_each(|j| Ok(t.set(j, j, body.dual()?.size)))?;
+        (0..modes).for_each(|j| t.set(j, j, size));
         if let Some(NullSpaceInput { vectors, .. }) = body.said.filter(|said| said.modes == Modes::Exact) {
             for j in 0..vectors.cols.min(modes) {
                 t.col_mut(j).copy_from_slice(&amplitudes(body, vectors.col(j))?);

@@ -1,6 +1,7 @@
 //! Bodies lent to other ranks: bits, what is sent, what is kept there and for how long.
 
 mod failures;
+mod given;
 mod parts;
 
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,0 +1,78 @@
+//! What rank 0 knows of bodies that it has given to other ranks.
+
+use crate::body::Name;
+use crate::solver::tests::lent::{chains, served, solved, N};
+use crate::solver::Problem;
+
+/// Coordinates of a chain, printed to five digits.
+fn place(problem: &mut Problem, body: usize) {
+    let (node, direction): (Vec<i32>, Vec<i32>) = (1..=N as i32).map(|i| (i, 1)).unzip();
+    let x: Vec<f64> = (0..N).map(|i| [0.0, 0.12345, 0.23451, 0.34512, 0.4][i] * (1 + body) as f64).collect();
+    problem.set_coordinates(body, 1, &node, &direction, &x, 1).unwrap();
+}
+
+#[test]
+fn what_is_known_of_a_body_on_another_rank_is_what_would_be_found_in_it() {
+    let served = served(|_, _| None);
+    let mut problem = chains(&[4.0, 3.0, 2.0, 1.0, 5.0], served.lending());
+    [0, 3].into_iter().for_each(|body| place(&mut problem, body));
+    solved(&mut problem).unwrap();
+    let mut lent = 0;
+    for (given, known) in problem.model.bodies.iter().zip(&problem.solved().bodies) {
+        let [given, known] = [&given.body, &known.body];
+        lent += usize::from(known.k().is_none());
+        assert_eq!((given.unit(), given.without(7.0)), (known.unit(), known.without(7.0)));
+        assert_eq!((given.length(), given.last_digit()), (known.length(), known.last_digit()));
+        assert_eq!((given.order, given.entries()), (known.order, known.entries()));
+    }
+    assert_eq!(lent, 4);
+    let placed = |body: usize| problem.solved().bodies[body].body.last_digit() > 0.0;
+    assert!([0, 3].into_iter().all(placed) && ![1, 4].into_iter().any(placed));
+    drop(problem);
+    assert_eq!(served.end(), 0);
+}
+
+/// Equal chains of which one holds another dof, or lies elsewhere: on one rank, and on rank 0.
+#[test]
+fn bodies_are_equal_only_if_all_that_the_host_has_told_of_them_is() {
+    for change in [
+        (|problem, body| problem.set_fixing(body, Some(&[2])).unwrap()) as fn(&mut Problem, usize),
+        |problem, body| place(problem, body),
+    ] {
+        for body in [4, 5, 6] {
+            let served = served(|_, _| None);
+            let mut both = [chains(&[2.0; 7], served.lending()), chains(&[2.0; 7], None)];
+            let answers = both.each_mut().map(|problem| {
+                change(problem, body);
+                let answer = solved(problem).unwrap();
+                let inverses: Vec<Vec<f64>> = (0..7)
+                    .map(|p| {
+                        let mut u = vec![0.0; N];
+                        problem.kplus(p, &[1.0, -0.5, 0.25, 2.0, 0.0], &mut u).unwrap();
+                        u
+                    })
+                    .collect();
+                (answer, inverses)
+            });
+            assert_eq!(answers[0], answers[1], "{body}");
+            assert!(served.asked(Name::Give) > 2);
+            drop(both);
+            assert_eq!(served.end(), 0);
+        }
+    }
+}
+
+/// What could not be made is asked for again, and what could be given is not sent again.
+#[test]
+fn after_a_failure_no_body_is_given_twice() {
+    let served = served(|_, _| None);
+    let mut problem = chains(&[4.0, 3.0, 2.0, 1.0, 5.0], served.lending());
+    problem.set_i64("memory_limit", 1).unwrap();
+    problem.solve().unwrap_err();
+    let given = served.asked(Name::Give);
+    problem.set_i64("memory_limit", 1 << 40).unwrap();
+    assert_eq!(solved(&mut problem).as_ref(), Ok(&super::serial(&[4.0, 3.0, 2.0, 1.0, 5.0])));
+    assert_eq!((given, served.asked(Name::Give)), (4, 4));
+    drop(problem);
+    assert_eq!(served.end(), 0);
+}
