@@ -83,6 +83,17 @@ use std::sync::Arc;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Symmetric;
 
+/// `K_p` that is not one matrix here.
+#[derive(Debug, Clone)]
+pub enum OtherForm {
+    /// Products with a `K_p` that stays with the host.
+    Operator(Arc<HostOperator>),
+    /// The sum of the matrices of pieces.
+    Assembled(Arc<Assembled>),
+    /// Another rank has it, with all that the host has told of it.
+    Elsewhere(Arc<BodyElsewhere>),
+}
+
 /// The input of the host for one body, in the host's units.
 #[derive(Debug, Default)]
 pub struct Body {
@@ -90,12 +101,8 @@ pub struct Body {
     pub order: usize,
     /// `K_p`, n x n, force / length.
     pub stiffness: Option<Arc<Symmetric>>,
-    /// Alternative: products with a `K_p` that stays with the host.
-    pub operator: Option<Arc<HostOperator>>,
-    /// Alternative: `K_p` as the sum of the matrices of pieces.
-    pub assembled: Option<Arc<Assembled>>,
-    /// Alternative: another rank has it, with all that the host has told of it.
-    pub elsewhere: Option<Arc<BodyElsewhere>>,
+    /// Alternative forms of `K_p`, which few bodies have.
+    pub other: Option<Box<OtherForm>>,
     /// `R_p` or vectors that may span it; if neither vectors nor coordinates are given, the library finds it.
     pub null_space: Option<Box<NullSpaceInput>>,
     /// Positions of the dofs: candidates for the null space if none is given.
@@ -112,8 +119,32 @@ impl Body {
     /// `K_p` in the form given by the host, if given.
     pub fn k(&self) -> Option<Stiffness<'_>> {
         let matrix = self.stiffness.as_deref().map(Stiffness::Matrix);
-        let host = || self.operator.as_deref().map(Stiffness::Host);
-        matrix.or_else(host).or_else(|| self.assembled.as_deref().map(Stiffness::Assembled))
+        matrix.or_else(|| match self.other.as_deref()? {
+            OtherForm::Operator(k) => Some(Stiffness::Host(k)),
+            OtherForm::Assembled(k) => Some(Stiffness::Assembled(k)),
+            OtherForm::Elsewhere(_) => None,
+        })
+    }
+
+    pub fn operator(&self) -> Option<&Arc<HostOperator>> {
+        match self.other.as_deref() {
+            Some(OtherForm::Operator(k)) => Some(k),
+            _ => None,
+        }
+    }
+
+    pub fn assembled(&self) -> Option<&Arc<Assembled>> {
+        match self.other.as_deref() {
+            Some(OtherForm::Assembled(k)) => Some(k),
+            _ => None,
+        }
+    }
+
+    pub fn elsewhere(&self) -> Option<&Arc<BodyElsewhere>> {
+        match self.other.as_deref() {
+            Some(OtherForm::Elsewhere(there)) => Some(there),
+            _ => None,
+        }
     }
 
     /// The host has given soft motions.
@@ -132,7 +163,7 @@ impl Body {
 
     /// `max K_ii`, 0 without stiffness, force / length.
     pub fn largest_diagonal(&self) -> f64 {
-        match &self.elsewhere {
+        match self.elsewhere() {
             Some(there) => there.facts.largest,
             None => self.k().map_or(0.0, |k| k.largest_diagonal()),
         }
@@ -141,12 +172,12 @@ impl Body {
     /// Number of entries of its matrix, here or on another rank; none if the host keeps them.
     pub fn entries(&self) -> Option<usize> {
         let here = self.stiffness.as_ref().map(|k| k.col.len());
-        here.or_else(|| self.elsewhere.as_ref().map(|there| there.facts.entries))
+        here.or_else(|| self.elsewhere().map(|there| there.facts.entries))
     }
 
     /// The length of its coordinates; 0 without.
     pub fn length(&self) -> f64 {
-        match &self.elsewhere {
+        match self.elsewhere() {
             Some(there) => there.facts.length,
             None => self.coordinates.as_ref().map_or(0.0, |given| given.length()),
         }
@@ -154,7 +185,7 @@ impl Body {
 
     /// What the last digit of its coordinates makes uncertain ([`Coordinates::last_digit`]); 0 without.
     pub fn last_digit(&self) -> f64 {
-        match &self.elsewhere {
+        match self.elsewhere() {
             Some(there) => there.facts.last_digit,
             None => self.coordinates.as_ref().map_or(0.0, |given| given.last_digit()),
         }
@@ -162,23 +193,24 @@ impl Body {
 
     /// Of the pattern of its matrix, of the values, and of what else the host has told ([`Facts`]); none if the host keeps the entries.
     fn keys(&self) -> Option<[u64; 3]> {
-        let there = self.elsewhere.as_ref().map(|there| there.facts.keys);
+        let there = self.elsewhere().map(|there| there.facts.keys);
         there.or_else(|| Some(keys(self.stiffness.as_deref()?, self)))
     }
 
     /// Nothing but the load remains of a body that another rank has.
     pub fn let_go(&mut self, there: Arc<BodyElsewhere>) {
         let (order, load) = (self.order, self.load.take());
-        *self = Self { order, load, elsewhere: Some(there), ..Self::default() };
+        let other = Some(Box::new(OtherForm::Elsewhere(there)));
+        *self = Self { order, load, other, ..Self::default() };
     }
 
     /// The same body without its load, of which the matrix and functions are shared.
     pub fn without_load(&self) -> Self {
-        let Self { order, stiffness, operator, null_space, coordinates, coordinate_modes, fixing, .. } = self;
+        let Self { order, stiffness, other, null_space, coordinates, coordinate_modes, fixing, .. } = self;
         Self {
             order: *order,
             stiffness: stiffness.clone(),
-            operator: operator.clone(),
+            other: other.clone(),
             null_space: null_space.clone(),
             coordinates: coordinates.clone(),
             coordinate_modes: *coordinate_modes,

@@ -25,10 +25,11 @@ pub fn parts(
     all.offsets.clone_from(&host.offsets);
     for (body, given) in host.bodies.iter().enumerate() {
         all.first.push(split_bodies.len());
-        let assembled = given.body.assembled.as_ref().map(|k| k.measured_without(slight));
+        let assembled = given.body.assembled().map(|k| k.measured_without(slight));
         all.assembled.push(assembled.transpose().map_err(|e| e.body(body))?);
         let mut split = Split { given, body, held, first: host.offsets[body], loose: &mut all.loose };
-        let pieces = given.mesh.as_deref().and_then(Mesh::pieces).filter(|_| given.body.assembled.is_some());
+        let pieces =
+            given.mesh.as_deref().and_then(Mesh::pieces).filter(|_| given.body.assembled().is_some());
         split_bodies.extend(match (pieces, connected.components(body), given.body.stiffness.as_deref()) {
             (Some(pieces), ..) => split.pieces(pieces).map_err(|e| e.body(body))?,
             (None, Some(components), Some(k)) => split.components(components, k).map_err(|e| e.body(body))?,
@@ -184,7 +185,7 @@ impl Split<'_> {
         copies: &[u32],
     ) -> Result<MadePart> {
         let mut shares = reserved(dofs.len(), WHAT)?;
-        let all = |dof: u32| self.given.body.assembled.as_ref().map_or(0.0, |all| all.diagonal(dof as usize));
+        let all = |dof: u32| self.given.body.assembled().map_or(0.0, |all| all.diagonal(dof as usize));
         let share = |(i, &dof): (usize, &u32)| match (stiffness.diagonal(i), all(dof)) {
             (own, all) if all > 0.0 => own / all,
             _ => 1.0 / f64::from(copies[dof as usize]),

@@ -35,7 +35,7 @@ pub struct Decomposition {
 impl Decomposition {
     /// Some body has several parts, or unknowns of several bodies are glued; otherwise the host's model itself is solved.
     pub fn is_due(host: &HostModel, connected: &Connected) -> bool {
-        let is_cut = |given: &GivenBody| given.body.assembled.is_some();
+        let is_cut = |given: &GivenBody| given.body.assembled().is_some();
         host.shares_numbers() || !connected.all_connected() || host.bodies.iter().any(is_cut)
     }
 

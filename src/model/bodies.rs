@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::body::{same_vectors, Body, Coordinates, HostFunctions, HostOperator, Modes, NullSpaceInput};
+use crate::body::{
+    same_vectors, Body, Coordinates, HostFunctions, HostOperator, Modes, NullSpaceInput, OtherForm,
+};
 use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
@@ -134,8 +136,8 @@ impl HostModel {
         }
         let operator = HostOperator::new(body, copied(diagonal, "the diagonal of a body")?, functions);
         let slot = self.change(body, Change::Pattern)?;
-        slot.body.operator = Some(Arc::new(operator));
-        (slot.body.stiffness, slot.body.assembled, slot.mesh) = (None, None, None);
+        slot.body.other = Some(Box::new(OtherForm::Operator(Arc::new(operator))));
+        (slot.body.stiffness, slot.mesh) = (None, None);
         slot.form = None;
         slot.spoiled = false;
         Ok(())
@@ -156,7 +158,7 @@ impl HostModel {
             if body.k().is_none() {
                 return refused(p, "the stiffness matrix has not been given");
             }
-            if body.operator.is_some() && body.null_space.is_none() && body.coordinates.is_none() {
+            if body.operator().is_some() && body.null_space.is_none() && body.coordinates.is_none() {
                 let what = "the null space has not been given: it cannot be found from products with K";
                 return refused(p, what);
             }

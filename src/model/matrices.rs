@@ -70,8 +70,7 @@ impl HostModel {
         };
         let given = self.change(body, change)?;
         given.body.stiffness = Some(Arc::new(stiffness));
-        given.body.operator = None;
-        (given.body.assembled, given.mesh) = (None, None);
+        (given.body.other, given.mesh) = (None, None);
         given.form = Some(Box::new(form));
         given.spoiled = false;
         Ok(())

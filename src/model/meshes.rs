@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::body::{Assembled, Form};
+use crate::body::{Assembled, Form, OtherForm};
 use crate::error::{Error, Kind, Result};
 use crate::mesh::{cut, pieces_for, Connectivity, ElementMatrix, ElementStorage, Elements, Mesh, Piece};
 use crate::model::bodies::check_ld;
@@ -31,7 +31,6 @@ impl HostModel {
         let connectivity = Connectivity::new(order, ptr, dof).map_err(|e| e.body(body))?;
         let given = self.change(body, Change::Pattern)?;
         given.without_matrix();
-        given.body.operator = None;
         let entries = ptr.windows(2).map(|pair| (pair[1] - pair[0]).pow(2)).sum();
         given.form = Some(Box::new(Form::Elements(entries)));
         given.spoiled = false;
@@ -163,8 +162,8 @@ impl HostModel {
 
 impl GivenBody {
     /// Drops the matrix of the body.
-    fn without_matrix(&mut self) {
-        (self.body.stiffness, self.body.assembled) = (None, None);
+    pub fn without_matrix(&mut self) {
+        (self.body.stiffness, self.body.other) = (None, None);
     }
 
     /// Memory for the matrix of a body in addition to those of its pieces.
@@ -183,7 +182,8 @@ impl GivenBody {
             Some(pieces) => {
                 let parts =
                     pieces.iter().map(|Piece { dofs, stiffness }| (Arc::clone(dofs), Arc::clone(stiffness)));
-                self.body.assembled = Some(Arc::new(Assembled::new(room, parts)));
+                let k = Arc::new(Assembled::new(room, parts));
+                self.body.other = Some(Box::new(OtherForm::Assembled(k)));
             }
             None => {}
         }

@@ -38,7 +38,7 @@ impl HostModel {
         }
         let mesh = Mesh::of_pieces(connectivity, pieces)?;
         let slot = self.change(body, Change::Pattern)?;
-        slot.body.operator = None;
+        slot.without_matrix();
         slot.form = Some(Box::new(Form::Elements(given.val.len())));
         slot.spoiled = false;
         slot.mesh = Some(Box::new(mesh));

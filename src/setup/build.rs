@@ -17,7 +17,7 @@ use crate::platform::memory::reserved;
 use crate::platform::stopwatch;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::qp::BetweenSolves;
-use crate::setup::given::OfAway;
+use crate::setup::given::{away_of, AwayOf};
 use crate::setup::islands::{Island, Members};
 use crate::setup::operators::Operators;
 use crate::setup::prepared::{Duals, Prepared};
@@ -34,7 +34,6 @@ struct WithRows {
     metric: Arc<ByBody>,
     /// C', no unit.
     compliance: Vec<f64>,
-    away: OfAway,
 }
 
 impl WithRows {
@@ -78,10 +77,10 @@ impl Prepared {
         let (mut known, mut metrics) = (Shared::default(), Shared::default());
         let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
         let mut all_carried = vec![None; model.bodies.len()];
-        for (mut island, away) in islands.into_iter().zip(away) {
+        for (k, mut island) in islands.into_iter().enumerate() {
             island.refresh(&lengths);
             check_compliance(&island)?;
-            let (Metric { values, carried }, metric) = metric(model, &island, &away)?;
+            let (Metric { values, carried }, metric) = metric(model, &island, away_of(&away, k))?;
             for (k, &p) in island.bodies.iter().enumerate() {
                 let range = island.touched.range(k);
                 let [first, end] = [range.start, range.end].map(|end| carried.partition_point(|j| *j < end));
@@ -107,14 +106,14 @@ impl Prepared {
             let rows = known.share(own.key(), own, DualRows::eq);
             let key = hash(START, metric.in_sequence().iter().map(|d| d.to_bits()));
             let metric = metrics.share(key, metric, ByBody::eq);
-            with_rows.push(WithRows { island: Box::new(island), rows, metric, compliance, away });
+            with_rows.push(WithRows { island: Box::new(island), rows, metric, compliance });
         }
         self.carry(all_carried);
         watch.phases.ended(Phase::Rows, begun);
         let operators = self.factorize(model, &distinct, watch)?;
         self.tell_pilots(model, &watch.log)?;
         let begun = Instant::now();
-        self.duals = Some(self.dualize(model, with_rows, operators, watch)?);
+        self.duals = Some(self.dualize(model, (with_rows, away), operators, watch)?);
         self.made += 1;
         watch.phases.ended(Phase::DualOperators, begun);
         Ok(())
@@ -157,7 +156,7 @@ impl Prepared {
     fn dualize(
         &mut self,
         model: &SolvedModel,
-        islands: Vec<WithRows>,
+        (islands, away): (Vec<WithRows>, Vec<AwayOf>),
         operators: Operators,
         watch: &mut Watch,
     ) -> Result<Duals> {
@@ -186,7 +185,7 @@ impl Prepared {
         let joining = |p: usize| {
             let (k, number) = (island_of[p], number_in[p]);
             self.bodies[p].inverse.as_ref()?.kplus.elsewhere()?;
-            let member = &islands[k].away.get(number)?.as_ref()?.name;
+            let member = &away_of(&away, k).get(number)?.as_ref()?.name;
             drafts[k].joining(number, member, islands[k].told(number, self.bodies[p].carried.as_deref()))
         };
         let joins = watch.stops.interrupt.during(|| self.join(joining))?;
@@ -200,8 +199,8 @@ impl Prepared {
         stopwatch::aside(|| watch.every_body(&part, assemble, &mut take))?;
         let mut joined = joins.answers()?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
-        let mut known = Shared::default();
-        for (WithRows { island, rows, metric, compliance, away }, draft) in islands.into_iter().zip(drafts) {
+        let (mut known, mut away) = (Shared::default(), away.into_iter());
+        for (WithRows { island, rows, metric, compliance }, draft) in islands.into_iter().zip(drafts) {
             let columns = draft.columns();
             self.work.columns_computed += columns.computed;
             self.work.columns_kept += columns.kept;
@@ -217,6 +216,7 @@ impl Prepared {
             };
             let kplus = |part: usize| Ok(&inverse(part)?.kplus);
             let whole = Whole::of(model, &island, &OfParts { kplus: &kplus, grounded: &grounded })?;
+            let away = away.next().unwrap_or_default();
             let apart = (!away.is_empty() || whole.is_some()).then(|| Box::new(Apart { whole, away }));
             let pairs = (!island.friction.is_empty()).then(Box::default);
             ready.push(Ready {

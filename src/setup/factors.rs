@@ -171,7 +171,7 @@ impl Prepared {
         let without: Vec<usize> = (0..self.bodies.len()).filter(|&p| self.bodies[p].keys.is_none()).collect();
         let keys = threads::run(model.threads(), without.len(), |k| {
             let body = &model.bodies[without[k]].body;
-            let there = body.elsewhere.as_ref().map(|of| [of.facts.keys[0], of.facts.keys[1]]);
+            let there = body.elsewhere().map(|of| [of.facts.keys[0], of.facts.keys[1]]);
             Ok(there.or_else(|| body.stiffness.as_ref().map(|k| [pattern_key(k), value_key(k)])))
         })?;
         without.into_iter().zip(keys).for_each(|(p, keys)| self.bodies[p].keys = keys);

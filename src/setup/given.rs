@@ -1,9 +1,11 @@
 //! Bodies given to other ranks before anything is made of them, and what is made of bodies wherever they are.
 
-use std::collections::HashMap;
-use std::sync::Arc;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, Mutex};
 
-use crate::body::{same_body, same_matrix_of, Asking, Away, BodyElsewhere, Entered, Facts, Token, Wire};
+use crate::body::{
+    same_body, same_matrix_of, Asking, Away, Body, BodyElsewhere, Entered, Facts, Token, Wire,
+};
 use crate::dual::DistinctRows;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::classes;
@@ -13,64 +15,74 @@ use crate::platform::threads;
 use crate::progress::{SetupPart, Watch};
 use crate::setup::islands::Island;
 use crate::setup::lending::{ranks_of, Cost};
-use crate::setup::prepared::Prepared;
+use crate::setup::prepared::{Prepared, There};
 use crate::setup::separate::beside_pieces;
 
 /// The bodies of an island that are on other ranks; empty if there are none.
-pub type OfAway = Box<[Option<Away>]>;
+pub type AwayOf = Box<[Option<Away>]>;
+
+/// Those of island k; of no island if there are none at all.
+pub fn away_of(all: &[AwayOf], k: usize) -> &[Option<Away>] {
+    all.get(k).map_or(&[], |own| own)
+}
 
 impl Prepared {
     /// Gives bodies to other ranks if a setup is due.
     pub fn give(&mut self, model: &SolvedModel, watch: &Watch) -> Result<()> {
         self.follow(model);
-        let all = 0..model.bodies.len();
-        for (own, given) in self.bodies.iter_mut().zip(&model.bodies) {
-            own.there = own.there.take().or_else(|| given.body.elsewhere.clone());
-        }
         if self.lending.is_none() || self.is_up_to_date(model) {
             return Ok(());
         }
         self.find_keys(model)?;
-        let key = |p: usize| self.bodies[p].keys;
-        let bodies = |p: usize, q: usize| [p, q].map(|p| &model.bodies[p].body);
-        let equal = classes(all.len(), key, |p, q| {
-            let [a, b] = bodies(p, q);
-            same_body(a, b)
-        });
-        let alike = classes(all.len(), key, |p, q| {
-            let [a, b] = bodies(p, q);
-            same_matrix_of(a, b)
-        });
+        let body = |p: usize| &model.bodies[p].body;
+        let of_class = |same: fn(&Body, &Body) -> bool| {
+            classes(self.bodies.len(), |p| self.bodies[p].keys, |p, q| same(body(p), body(q)))
+        };
+        let (equal, alike) = (of_class(same_body), of_class(same_matrix_of));
         let ranks = self.lend(model, (&equal, &alike))?;
-        let mut there: HashMap<(usize, usize), Arc<BodyElsewhere>> = HashMap::new();
-        for p in all.clone() {
-            there.extend(self.bodies[p].there.as_ref().map(|of| ((equal[p], ranks[p]), Arc::clone(of))));
-        }
-        let new: Vec<usize> =
-            all.clone().filter(|p| ranks[*p] > 0 && self.bodies[*p].there.is_none()).collect();
-        let facts = threads::run(model.threads(), new.len(), |k| Ok(Facts::of(&model.bodies[new[k]].body)))?;
+        self.send(model, (&equal, &ranks), watch)
+    }
+
+    /// Sends every rank its bodies, equal ones once.
+    fn send(
+        &mut self,
+        model: &SolvedModel,
+        (equal, ranks): (&[usize], &[usize]),
+        watch: &Watch,
+    ) -> Result<()> {
+        let Some(lending) = &self.lending else { return Ok(()) };
+        let place = |p: usize| (equal[p], ranks[p]);
+        let there = |p: usize| Some((place(p), Arc::clone(&self.bodies[p].there.as_ref()?.of)));
+        let mut known: HashMap<(usize, usize), Arc<BodyElsewhere>> =
+            (0..ranks.len()).filter_map(there).collect();
+        let is_new = |p: &usize| ranks[*p] > 0 && self.bodies[*p].there.is_none();
+        let new: Vec<usize> = (0..ranks.len()).filter(is_new).collect();
+        let sent: BTreeMap<(usize, usize), usize> = new.iter().rev().map(|&p| (place(p), p)).collect();
+        let sent: Vec<usize> = sent.into_values().filter(|p| !known.contains_key(&place(*p))).collect();
+        let facts =
+            threads::run(model.threads(), sent.len(), |k| Ok(Facts::of(&model.bodies[sent[k]].body)))?;
         let mut questions = Vec::new();
-        for (&p, facts) in new.iter().zip(facts) {
-            let (Some(lending), Some(facts)) = (&self.lending, facts) else { continue };
-            there.entry((equal[p], ranks[p])).or_insert_with(|| {
-                let (asking, of) = lending.giving(ranks[p], &model.bodies[p].body, facts);
-                questions.push((p, asking));
-                Arc::new(of)
-            });
+        for (&p, facts) in sent.iter().zip(facts) {
+            let facts = facts.ok_or_else(without_ranks)?;
+            let (asking, there) = lending.giving(ranks[p], &model.bodies[p].body, facts);
+            questions.push((p, asking));
+            known.insert(place(p), Arc::new(there));
         }
         let owed = watch.stops.interrupt.during(|| self.ask(questions))?;
         for (p, answer) in owed.answers::<()>()? {
             answer.map_err(|e| e.body(p))?;
         }
         for p in new {
-            self.bodies[p].there = there.get(&(equal[p], ranks[p])).cloned();
+            let of = known.get(&place(p)).cloned();
+            self.bodies[p].there = of.map(|of| Box::new(There { of, load: Mutex::default() }));
         }
         Ok(())
     }
 
     /// What other ranks have in place of bodies, which need not be here. Parts in islands with pieces are needed here, too.
     pub fn gone(&self, model: &SolvedModel) -> Result<Vec<(usize, Arc<BodyElsewhere>)>> {
-        let there = self.bodies.iter().enumerate().filter_map(|(p, own)| Some((p, own.there.clone()?)));
+        let there =
+            self.bodies.iter().enumerate().filter_map(|(p, own)| Some((p, own.there.as_ref()?.of.clone())));
         let mut gone: Vec<_> = there.collect();
         if !gone.is_empty() {
             let stays = beside_pieces(model)?;
@@ -81,7 +93,7 @@ impl Prepared {
 
     /// The rank that has a body.
     pub(super) fn rank(&self, p: usize) -> usize {
-        self.bodies[p].there.as_ref().map_or(0, |of| of.name.rank)
+        self.bodies[p].there.as_ref().map_or(0, |there| there.of.name.rank)
     }
 
     /// The rank of every body. `equal`, `alike`: the first equal body of each, and the first of an equal matrix. Bodies of equal matrices
@@ -126,13 +138,16 @@ impl Prepared {
         model: &SolvedModel,
         islands: &[Island],
         watch: &Watch,
-    ) -> Result<Vec<OfAway>> {
+    ) -> Result<Vec<AwayOf>> {
+        if self.bodies.iter().all(|own| own.there.is_none()) {
+            return Ok(Vec::new());
+        }
         let (mut questions, mut names) = (Vec::new(), HashMap::new());
         for island in islands {
             for (k, &p) in island.bodies.iter().enumerate() {
                 let Some(there) = &self.bodies[p].there else { continue };
                 let unit = model.bodies[p].body.without(island.unit);
-                let (asking, name) = there.entering(island.touched.on(k), unit);
+                let (asking, name) = there.of.entering(island.touched.on(k), unit);
                 questions.push((p, asking));
                 names.insert(p, (name, unit));
             }
@@ -143,7 +158,7 @@ impl Prepared {
             let (name, unit) = names.remove(&p).ok_or_else(without_ranks)?;
             let there = self.bodies[p].there.as_ref().ok_or_else(without_ranks)?;
             let order = model.bodies[p].body.order;
-            entered.insert(p, there.entered(name, order, unit, answer.map_err(|e| e.body(p))?));
+            entered.insert(p, there.of.entered(name, order, unit, answer.map_err(|e| e.body(p))?));
         }
         let of_island = |island: &Island| match island.bodies.iter().any(|p| entered.contains_key(p)) {
             true => island.bodies.iter().map(|p| entered.remove(p)).collect(),

@@ -14,7 +14,7 @@ impl Prepared {
     /// Makes K+ of the host's bodies that have none, and checks their functions.
     pub(super) fn try_hosts(&mut self, model: &SolvedModel, watch: &mut Watch) -> Result<()> {
         let pending =
-            |&p: &usize| self.bodies[p].inverse.is_none() && model.bodies[p].body.operator.is_some();
+            |&p: &usize| self.bodies[p].inverse.is_none() && model.bodies[p].body.operator().is_some();
         let pending: Vec<usize> = (0..self.bodies.len()).filter(pending).collect();
         if pending.is_empty() {
             return Ok(());
@@ -49,7 +49,7 @@ impl Prepared {
 
 fn host_inverse(body: &Body, tolerance: f64) -> Result<GeneralizedInverse> {
     let missing = || Error::new(Kind::Internal, "a body without functions of the host was checked");
-    let operator = Arc::clone(body.operator.as_ref().ok_or_else(missing)?);
+    let operator = Arc::clone(body.operator().ok_or_else(missing)?);
     if body.fixing.is_some() {
         let what = "fixing dofs were given, but the host provides K+ of this body";
         return Err(Error::new(Kind::Unsupported, what));

@@ -7,7 +7,7 @@ use crate::certificate::{led, Beside, Couple, Coupled, Trace, Way};
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::model::{Lengths, SolvedModel};
-use crate::setup::given::OfAway;
+use crate::setup::given::{away_of, AwayOf};
 use crate::setup::islands::Island;
 use crate::setup::prepared::Prepared;
 
@@ -61,9 +61,9 @@ impl Prepared {
         &self,
         model: &'a SolvedModel,
         islands: &[Island],
-        away: &[OfAway],
+        away: &[AwayOf],
     ) -> Result<Lengths<'a>> {
-        let of = |k: usize| Ok((&islands[k], islands[k].matrices(model, &away[k])));
+        let of = |k: usize| Ok((&islands[k], islands[k].matrices(model, away_of(away, k))));
         lengths(self, model, islands.len(), &of)
     }
 

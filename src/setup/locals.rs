@@ -11,7 +11,7 @@ use crate::linalg::vector::weighted_norm;
 use crate::model::SolvedModel;
 use crate::setup::given::without_ranks;
 use crate::setup::islands::Island;
-use crate::setup::prepared::{LoadElsewhere, Prepared};
+use crate::setup::prepared::{Prepared, There};
 use crate::setup::ready::Ready;
 
 impl Prepared {
@@ -46,23 +46,24 @@ impl Prepared {
     ) -> Result<Kept<HostLoad>> {
         let given = |k: usize| model.bodies[bodies[k]].body.load.as_deref();
         let load = |k: usize| given(k).map(Arc::from);
-        let known = |k: usize| self.bodies[bodies[k]].load.lock().unwrap_or_else(PoisonError::into_inner);
+        let there = |k: usize| self.bodies[bodies[k]].there.as_deref();
+        let known = |there: &There| there.load.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let (mut questions, mut new) = (Vec::new(), HashMap::new());
-        for k in 0..bodies.len() {
-            let Some(there) = self.bodies[bodies[k]].there.as_ref() else { continue };
+        for (k, there) in (0..bodies.len()).filter_map(|k| Some((k, there(k)?))) {
             let key = given(k).map(|f| hash(START, f.iter().map(|f| f.to_bits())));
-            if known(k).as_ref().is_none_or(|known| known.key != key) {
-                let (asking, name) = there.giving_load(load(k));
+            if known(there).is_none_or(|known| known.0 != key) {
+                let (asking, name) = there.of.giving_load(load(k));
                 questions.push((k, asking));
-                new.insert(k, LoadElsewhere { key, name });
+                new.insert(k, (key, name));
             }
         }
         for (k, answer) in self.ask(questions)?.answers::<()>()? {
             answer.map_err(|e| e.body(bodies[k]))?;
-            *known(k) = new.remove(&k);
+            let of = there(k).ok_or_else(without_ranks)?;
+            *of.load.lock().unwrap_or_else(PoisonError::into_inner) = new.remove(&k);
         }
-        let there = |k: usize| Ok(Arc::clone(&known(k).as_ref().ok_or_else(without_ranks)?.name));
-        locals.kept(|k| HostLoad(load(k)), there)
+        let name = |k: usize| Ok(known(there(k).ok_or_else(without_ranks)?).ok_or_else(without_ranks)?.1);
+        locals.kept(|k| HostLoad(load(k)), name)
     }
 
     /// `Duals::loads`

@@ -75,7 +75,7 @@ impl Prepared {
         };
         let asking = |k: usize| {
             let of: &Maker = &makers[k];
-            self.bodies[of.by].there.as_ref().map(|there| there.planning(with(of)))
+            self.bodies[of.by].there.as_ref().map(|there| there.of.planning(with(of)))
         };
         let here = |k: usize| {
             let of = &makers[k];

@@ -105,7 +105,7 @@ impl Prepared {
 }
 
 fn wanted(model: &SolvedModel, ready: &Ready) -> Preconditioning {
-    let of_host = |&p: &usize| model.bodies[p].body.operator.is_some();
+    let of_host = |&p: &usize| model.bodies[p].body.operator().is_some();
     match model.settings.preconditioner {
         Preconditioning::Automatic if ready.island.bodies.iter().all(of_host) => Preconditioning::None,
         Preconditioning::Automatic if lumped_pays(ready) => Preconditioning::Lumped,

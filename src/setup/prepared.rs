@@ -35,9 +35,7 @@ pub struct PreparedBody {
     /// `F_p` of the previous rows, with K+ and while there is no dual problem.
     pub operator: Option<Box<Kept>>,
     /// The body on another rank.
-    pub there: Option<Arc<BodyElsewhere>>,
-    /// Its load there.
-    pub load: Mutex<Option<LoadElsewhere>>,
+    pub there: Option<Box<There>>,
     /// The rank that has the body, or had it with other values.
     pub rank: Option<u32>,
     /// Its carried unknowns: K+ holds them.
@@ -48,11 +46,12 @@ pub struct PreparedBody {
     pub keys: Option<[u64; 2]>,
 }
 
-/// A load that the rank of its body has.
-pub struct LoadElsewhere {
-    /// Of its numbers.
-    pub key: Option<u64>,
-    pub name: Arc<Token>,
+/// A body on another rank.
+pub struct There {
+    /// Equal bodies share it.
+    pub of: Arc<BodyElsewhere>,
+    /// Its load there, and the hash key of its numbers.
+    pub load: Mutex<Option<(Option<u64>, Arc<Token>)>>,
 }
 
 /// `K_p+` of the matrix divided by `unit`, the largest power of two that does not exceed its largest diagonal entry, and
@@ -153,7 +152,6 @@ impl Prepared {
             own.keys.take_if(|_| own.of.stiffness != now.stiffness);
             if own.of != now {
                 (own.inverse, own.operator, own.there, own.of) = (None, None, None, now);
-                own.load = Mutex::default();
             }
         }
     }
@@ -166,7 +164,6 @@ impl Prepared {
         }
         for own in self.bodies.iter_mut().filter(|own| is_lost(own)) {
             (own.inverse, own.operator, own.there, own.rank) = (None, None, None, None);
-            own.load = Mutex::default();
         }
         self.lending = None;
     }

@@ -74,7 +74,7 @@ impl Problem {
         const PER_DOF: usize = 2 * size_of::<usize>();
         let missing = || Error::new(Kind::State, "the stiffness matrix has not been given").body(body);
         let given = &self.model.given(body)?.body;
-        if let Some(k) = &given.assembled {
+        if let Some(k) = given.assembled() {
             let _room = headroom(k.order() * PER_DOF, "the connected parts of a body")?;
             return Ok(k.components());
         }
@@ -86,7 +86,7 @@ impl Problem {
     pub fn body_facts(&self, body: usize) -> Result<BodyFacts> {
         let given = self.model.given(body)?;
         let n = given.body.order;
-        let (k, cut) = (given.body.stiffness.as_deref(), given.body.assembled.as_deref());
+        let (k, cut) = (given.body.stiffness.as_deref(), given.body.assembled().map(|k| &**k));
         let known = k.is_some() || cut.is_some();
         let components = known.then(|| self.components(body)).transpose()?.map(|(_, number)| number);
         let origin = match (&given.body.null_space, &given.body.coordinates) {
@@ -122,7 +122,7 @@ impl Problem {
 
     fn factors_of(&self, body: usize) -> Option<Factors> {
         let address = |p: usize| self.inverses(p).map(|of| of.kplus.factor_address()).collect::<Vec<_>>();
-        let (is_cut, own) = (self.model.bodies[body].body.assembled.is_some(), address(body));
+        let (is_cut, own) = (self.model.bodies[body].body.assembled().is_some(), address(body));
         if own.is_empty() {
             return None;
         }

@@ -303,7 +303,7 @@ impl Problem {
 
     /// Refuses a body that is cut: it has no factor of its own.
     pub(super) fn check_whole_body(&self, body: usize) -> Result<()> {
-        if self.model.given(body)?.body.assembled.is_none() {
+        if self.model.given(body)?.body.assembled().is_none() {
             return Ok(());
         }
         let what = "the body is cut into pieces and has no K+ of its own: option pieces = 1, set before its elements, leaves it whole";

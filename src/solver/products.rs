@@ -29,7 +29,7 @@ impl Problem {
     /// and orthonormal in the metric of diag K / 2^p of each part.
     pub fn null_space(&mut self, body: usize) -> Result<(usize, Cow<'_, [f64]>)> {
         let order = self.model.order(body)?;
-        if self.model.bodies[body].body.assembled.is_some() {
+        if self.model.bodies[body].body.assembled().is_some() {
             self.setup()?;
             let basis = self.parts().and_then(|parts| null_space_of(&self.prepared, parts, body));
             let missing = || Error::new(Kind::Internal, "the setup left a body without null space");
@@ -57,7 +57,7 @@ impl Problem {
     /// Gap of a null space that the library found: ratio of the softest other motion to its stiffest in the metric of
     /// diag K, both at least 1e-14 of the largest, the least of all parts; none if the host gave vectors or coordinates.
     pub fn null_space_gap(&mut self, body: usize) -> Result<Option<f64>> {
-        if self.model.given(body)?.body.assembled.is_some() {
+        if self.model.given(body)?.body.assembled().is_some() {
             return Ok(None);
         }
         let parts = self.set_up_parts(body)?;
@@ -66,7 +66,7 @@ impl Problem {
 
     /// The r dofs held in K+ of (14)-(15), part after part; not known for a K+ of the host.
     pub fn fixing_dofs(&mut self, body: usize) -> Result<Vec<usize>> {
-        if self.model.given(body)?.body.operator.is_some() {
+        if self.model.given(body)?.body.operator().is_some() {
             let what = "K+ of this body is given by the host: its fixing dofs are not known";
             return Err(Error::new(Kind::Unsupported, what).body(body));
         }

@@ -74,7 +74,7 @@ impl HostModel {
     /// pass over elements.
     fn check_kept(&self) -> Result<()> {
         for (p, given) in self.bodies.iter().enumerate() {
-            if given.body.operator.is_some() {
+            if given.body.operator().is_some() {
                 let what =
                     "the body is given by functions of the host (feti_body_operator), which a file cannot contain";
                 return Err(Error::new(Kind::Unsupported, what).body(p));

@@ -175,7 +175,7 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
         let arrays = [Numbers(&k.ptr), Reals(&k.val), Columns(&k.col)];
         Section { tag: STIFFNESS, pieces: sizes.into_iter().chain(arrays).collect() }
     });
-    let pieces = body.assembled.as_ref().and(given.mesh.as_deref()).and_then(Mesh::pieces).map(of_pieces);
+    let pieces = body.assembled().and(given.mesh.as_deref()).and_then(Mesh::pieces).map(of_pieces);
     let null_space = body.null_space.as_ref().map(|r| {
         let sizes = [count(r.vectors.rows), count(r.vectors.cols), number(r.modes)];
         Section { tag: NULL_SPACE, pieces: sizes.into_iter().chain([Reals(&r.vectors.data)]).collect() }

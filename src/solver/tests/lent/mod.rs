@@ -195,7 +195,7 @@ fn lent_bodies_have_the_bits_and_the_work_of_those_that_stay() {
         assert_eq!(served.asked(Name::Give), given, "equal bodies of a rank are given once");
         let bodies = lent.solved().bodies.iter().map(|given| &given.body);
         let here: Vec<bool> =
-            bodies.map(|body| body.stiffness.is_some() && body.elsewhere.is_none()).collect();
+            bodies.map(|body| body.stiffness.is_some() && body.elsewhere().is_none()).collect();
         assert_eq!(here, (0..stiffness.len()).map(|p| p % 3 == 2).collect::<Vec<_>>());
         let names =
             [Name::Factorise, Name::Boundary, Name::Multiply, Name::Entries, Name::Join, Name::Displace];
