@@ -96,19 +96,16 @@ impl Prepared {
         self.bodies[p].there.as_ref().map_or(0, |there| there.of.name.rank)
     }
 
-    /// The rank of every body. `equal`, `alike`: the first equal body of each, and the first of an equal matrix. Bodies of equal matrices
-    /// that are not equal stay together.
+    /// The rank of every body: that which it has had, or an equal one. `equal`, `alike`: the first equal body of each, and the first of an
+    /// equal matrix; bodies of equal matrices that are not equal stay together, since they may share a factor.
     fn lend(&mut self, model: &SolvedModel, (equal, alike): (&[usize], &[usize])) -> Result<Vec<usize>> {
         let Some(lending) = &self.lending else { return Ok(vec![0; equal.len()]) };
-        let has = |p: usize| self.bodies[p].there.is_some() || self.bodies[p].inverse.is_some();
-        let of_class = (0..equal.len()).rev().filter(|p| has(*p)).map(|p| (equal[p], self.rank(p)));
-        let of_class: HashMap<usize, usize> = of_class.collect();
-        let is_fixed = |p: usize| has(p) || of_class.contains_key(&equal[p]);
-        let given = |p: usize| {
-            let own = has(p).then(|| self.rank(p));
-            own.or(of_class.get(&equal[p]).copied()).or(self.bodies[p].rank.map(|rank| rank as usize))
-        };
-        let given: Vec<Option<usize>> = (0..equal.len()).map(given).collect();
+        let rank = |p: usize| self.bodies[p].rank.map(|rank| rank as usize);
+        let all = 0..equal.len();
+        let of_class: HashMap<usize, usize> =
+            all.clone().rev().filter_map(|p| Some((equal[p], rank(p)?))).collect();
+        let given: Vec<Option<usize>> =
+            all.clone().map(|p| rank(p).or_else(|| of_class.get(&equal[p]).copied())).collect();
         // no row of the dual is known yet: one for each unknown that a row touches
         let rows: Vec<DistinctRows> =
             touched(model).into_iter().map(|rows| DistinctRows { rows, places: rows }).collect();
@@ -119,14 +116,12 @@ impl Prepared {
             let bytes = (entries * (size_of::<f64>() + size_of::<u32>())) as f64;
             Some(Cost { work: operators.sizes[p].factorisation() + assembly[p], bytes })
         };
-        let costs: Vec<Option<Cost>> = (0..equal.len()).map(cost).collect();
+        let costs: Vec<Option<Cost>> = all.clone().map(cost).collect();
         let mut ranks = ranks_of(lending.size(), &given, &costs, lending.all);
-        for p in (0..ranks.len()).filter(|p| !is_fixed(*p)) {
-            if equal[alike[p]] != equal[p] {
-                ranks[p] = ranks[alike[p]];
-            }
+        let new = all.filter(|p| given[*p].is_none());
+        for p in new.clone().filter(|p| equal[alike[*p]] != equal[*p]) {
+            ranks[p] = ranks[alike[p]];
         }
-        let new = (0..ranks.len()).filter(|p| given[*p].is_none());
         lending.count(new.clone().count(), new.filter(|p| ranks[*p] > 0).count());
         self.bodies.iter_mut().zip(&ranks).for_each(|(own, rank)| own.rank = Some(*rank as u32));
         Ok(ranks)
