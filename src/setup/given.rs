@@ -3,9 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex};
 
-use crate::body::{
-    same_body, same_matrix_of, Asking, Away, Body, BodyElsewhere, Entered, Facts, Token, Wire,
-};
+use crate::body::{same_body, Asking, Away, BodyElsewhere, Entered, Facts, Token, Wire};
 use crate::dual::DistinctRows;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::classes;
@@ -34,12 +32,9 @@ impl Prepared {
             return Ok(());
         }
         self.find_keys(model)?;
-        let body = |p: usize| &model.bodies[p].body;
-        let of_class = |same: fn(&Body, &Body) -> bool| {
-            classes(self.bodies.len(), |p| self.bodies[p].keys, |p, q| same(body(p), body(q)))
-        };
-        let (equal, alike) = (of_class(same_body), of_class(same_matrix_of));
-        let ranks = self.lend(model, (&equal, &alike))?;
+        let same = |p: usize, q: usize| same_body(&model.bodies[p].body, &model.bodies[q].body);
+        let equal = classes(self.bodies.len(), |p| self.bodies[p].keys, same);
+        let ranks = self.lend(model, &equal)?;
         self.send(model, (&equal, &ranks), watch)
     }
 
@@ -96,9 +91,8 @@ impl Prepared {
         self.bodies[p].there.as_ref().map_or(0, |there| there.of.name.rank)
     }
 
-    /// The rank of every body: that which it has had, or an equal one. `equal`, `alike`: the first equal body of each, and the first of an
-    /// equal matrix; bodies of equal matrices that are not equal stay together, since they may share a factor.
-    fn lend(&mut self, model: &SolvedModel, (equal, alike): (&[usize], &[usize])) -> Result<Vec<usize>> {
+    /// The rank of every body: that which it has had, or an equal one. `equal`: the first equal body of each.
+    fn lend(&mut self, model: &SolvedModel, equal: &[usize]) -> Result<Vec<usize>> {
         let Some(lending) = &self.lending else { return Ok(vec![0; equal.len()]) };
         let rank = |p: usize| self.bodies[p].rank.map(|rank| rank as usize);
         let all = 0..equal.len();
@@ -117,11 +111,8 @@ impl Prepared {
             Some(Cost { work: operators.sizes[p].factorisation() + assembly[p], bytes })
         };
         let costs: Vec<Option<Cost>> = all.clone().map(cost).collect();
-        let mut ranks = ranks_of(lending.size(), &given, &costs, lending.all);
+        let ranks = ranks_of(lending.size(), &given, &costs, lending.all);
         let new = all.filter(|p| given[*p].is_none());
-        for p in new.clone().filter(|p| equal[alike[*p]] != equal[*p]) {
-            ranks[p] = ranks[alike[p]];
-        }
         lending.count(new.clone().count(), new.filter(|p| ranks[*p] > 0).count());
         self.bodies.iter_mut().zip(&ranks).for_each(|(own, rank)| own.rank = Some(*rank as u32));
         Ok(ranks)

@@ -215,6 +215,12 @@ impl Prepared {
         phases.report()
     }
 
+    /// Rows carry unknowns of the body.
+    #[cfg(test)]
+    pub fn carries(&self, body: usize) -> bool {
+        self.bodies[body].carried.is_some()
+    }
+
     /// Sets the keys of all bodies independently of their matrices.
     #[cfg(test)]
     pub fn set_keys(&mut self, model: &SolvedModel, keys: impl Fn(usize) -> [u64; 2]) {

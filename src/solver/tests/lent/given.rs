@@ -2,7 +2,7 @@
 
 use crate::body::Name;
 use crate::solver::tests::lent::{chains, served, solved, N};
-use crate::solver::Problem;
+use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};
 
 /// Coordinates of a chain, printed to five digits.
 fn place(problem: &mut Problem, body: usize) {
@@ -74,5 +74,46 @@ fn after_a_failure_no_body_is_given_twice() {
     assert_eq!(solved(&mut problem).as_ref(), Ok(&super::serial(&[4.0, 3.0, 2.0, 1.0, 5.0])));
     assert_eq!((given, served.asked(Name::Give)), (4, 4));
     drop(problem);
+    assert_eq!(served.end(), 0);
+}
+
+/// A chain whose last spring is a billion times softer, at both ends tied to others, and a pilot of one unknown, tied to a chain and
+/// loaded: unknowns that rows hold, on other ranks.
+#[test]
+fn unknowns_that_rows_hold_have_their_metric_on_other_ranks() {
+    let served = served(|_, _| None);
+    let answers = [served.lending(), None].map(|lending| {
+        let mut problem = chains(&[4.0, 3.0, 2.0, 1.0], lending);
+        let soft = [1.0, 1.0, 1.0, 1e-9];
+        let diagonal = |i: usize| soft.get(i).unwrap_or(&0.0) + if i > 0 { soft[i - 1] } else { 0.0 };
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..N {
+            if i > 0 {
+                col.push(i as i64 - 1);
+                val.push(-soft[i - 1]);
+            }
+            col.push(i as i64);
+            val.push(diagonal(i));
+            ptr.push(col.len());
+        }
+        let chain = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+        let pilot = SparseInput { ptr: &[0, 1], col: &[0], val: &[1e-9], storage: Storage::Lower };
+        let [chain, pilot] = [(N, chain), (1, pilot)].map(|(n, k)| {
+            let body = problem.add_body(n).unwrap();
+            problem.set_stiffness(body, k).unwrap();
+            body as i64
+        });
+        assert_eq!((chain, pilot), (4, 5), "on ranks 2 and 0");
+        problem.set_load(5, &[-0.5]).unwrap();
+        let end = N as i64 - 1;
+        for (body, dof) in [([3, chain], [end, 0]), ([0, chain], [end, end]), ([chain, pilot], [end, 0])] {
+            let rows = RowsInput { ptr: &[0, 2], body: Some(&body), dof: &dof, val: &[1.0, -1.0], rhs: None };
+            problem.add_rows(RowKind::Equality, rows).unwrap();
+        }
+        let answer = solved(&mut problem).unwrap();
+        assert!(problem.prepared.carries(4) && problem.prepared.carries(5));
+        answer
+    });
+    assert_eq!(answers[0], answers[1]);
     assert_eq!(served.end(), 0);
 }
