@@ -1,6 +1,7 @@
 //! What rank 0 knows of bodies that it has given to other ranks.
 
 use crate::body::Name;
+use crate::solve::local::Rigid;
 use crate::solver::tests::lent::{chains, served, solved, N};
 use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};
 
@@ -111,8 +112,13 @@ fn unknowns_that_rows_hold_have_their_metric_on_other_ranks() {
             problem.add_rows(RowKind::Equality, rows).unwrap();
         }
         let answer = solved(&mut problem).unwrap();
-        assert!(problem.prepared.carries(4) && problem.prepared.carries(5));
-        answer
+        let (model, prepared) = (problem.solved(), &problem.prepared);
+        assert!(prepared.carries(4) && prepared.carries(5));
+        let bodies = prepared.locals(model, &prepared.done(model).unwrap().islands[0]).unwrap();
+        let v = bodies.iter().map(|body| (0..body.order()).map(|i| 1.0 + i as f64).collect()).collect();
+        let rigid = bodies.ask(|_| Rigid, &bodies.put(v).unwrap()).unwrap();
+        assert!(rigid[4].iter().any(|a| *a != 0.0), "R'D v");
+        (answer, rigid)
     });
     assert_eq!(answers[0], answers[1]);
     assert_eq!(served.end(), 0);
