@@ -55,8 +55,8 @@ pub use boundary::{boundary, diagonal, dirichlet_bytes, Inside};
 pub use coarse::Coarse;
 pub use digits::Digits;
 pub use elsewhere::{
-    ask, Asking, Away, BodyElsewhere, Elsewhere, Entered, Facts, FormElsewhere, HostLoad, InIsland, Joined,
-    Joining, Name, Owed, ABOUT_BODIES,
+    ask, Asking, Away, BodyElsewhere, Elsewhere, Entered, Facts, FormElsewhere, HostLoad, InIsland, Joining,
+    Name, Owed, ABOUT_BODIES,
 };
 pub use generalized_inverse::{Factorised, GeneralizedInverse};
 pub use given::Stiffness;

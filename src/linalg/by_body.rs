@@ -11,13 +11,13 @@ use crate::platform::memory::reserved;
 pub type Ranges = Arc<Vec<Range<usize>>>;
 
 /// Bodies of so many unknowns, one after the other.
-pub fn ranges(orders: impl Iterator<Item = usize>) -> Ranges {
+pub fn ranges(orders: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
     let mut end = 0;
     let range = |order: usize| {
         end += order;
         end - order..end
     };
-    Arc::new(orders.map(range).collect())
+    orders.map(range).collect()
 }
 
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -39,6 +39,7 @@ impl<T> Shared<T> {
 pub fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
+
 /// The first equal member for every member.
 pub fn classes<K: Eq + Hash>(
     count: usize,

@@ -12,7 +12,8 @@ pub fn taken(name: Name, from: &mut &[u8]) -> Result<Box<dyn Answering>> {
         ($($name:ident)+) => {
             match name {
                 $(Name::$name => asked::<$name>(from),)+
-                Name::Give | Name::GiveLoad | Name::Enter | Name::Plan | Name::Follow | Name::Analyse | Name::Factorise => Err(damaged()),
+                Name::Give | Name::GiveLoad | Name::Enter => Err(damaged()),
+                Name::Plan | Name::Follow | Name::Analyse | Name::Factorise => Err(damaged()),
                 Name::Boundary | Name::Multiply | Name::Entries | Name::Solve | Name::NullSpace | Name::Join => {
                     Err(damaged())
                 }

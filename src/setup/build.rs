@@ -246,8 +246,8 @@ fn ratio_of_units(model: &SolvedModel, island: &Island, body: usize) -> f64 {
     (island.unit / model.bodies[body].body.without(island.unit)).min(2f64.powi(1000))
 }
 
-/// `D~ / 2^p` of an island, where rows touch and over all unknowns of the bodies that are here; for dofs without stiffness D is that of the stiffest dof of their
-/// body.
+/// `D~ / 2^p` of an island, where rows touch and over all unknowns of the bodies that are here; for dofs without stiffness D is that of the
+/// stiffest dof of their body.
 fn metric(model: &SolvedModel, island: &Island, away: &[Option<Away>]) -> Result<(Metric, ByBody)> {
     let bodies = island.matrices(model, away);
     let rows = RowKind::ALL.map(|kind| &island.members(kind).rows);
@@ -262,7 +262,7 @@ fn metric(model: &SolvedModel, island: &Island, away: &[Option<Away>]) -> Result
     let each = bodies.iter().enumerate().map(everywhere);
     let ranges = match away.is_empty() {
         true => Arc::clone(&island.ranges),
-        false => ranges(bodies.iter().map(|body| body.here().map_or(0, Local::order))),
+        false => Arc::new(ranges(bodies.iter().map(|body| body.here().map_or(0, Local::order)))),
     };
     let all = ByBody::from_each(&ranges, each, "the metric of an island")?;
     Ok((at_rows, all))

@@ -54,8 +54,8 @@ impl Prepared {
         let new: Vec<usize> = (0..ranks.len()).filter(is_new).collect();
         let sent: BTreeMap<(usize, usize), usize> = new.iter().rev().map(|&p| (place(p), p)).collect();
         let sent: Vec<usize> = sent.into_values().filter(|p| !known.contains_key(&place(*p))).collect();
-        let facts =
-            threads::run(model.threads(), sent.len(), |k| Ok(Facts::of(&model.bodies[sent[k]].body)))?;
+        let facts = |k: usize| Ok(Facts::of(&model.bodies[sent[k]].body));
+        let facts = stopwatch::aside(|| threads::run(model.threads(), sent.len(), facts))?;
         let mut questions = Vec::new();
         for (&p, facts) in sent.iter().zip(facts) {
             let facts = facts.ok_or_else(without_ranks)?;

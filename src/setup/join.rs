@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::body::{Coarse, FormElsewhere, Joined, Joining, Owed};
+use crate::body::{Coarse, FormElsewhere, Joining, Owed};
 use crate::dual::Form;
 use crate::error::Result;
 use crate::setup::prepared::Prepared;
@@ -34,7 +34,7 @@ impl Joins {
 
     /// The parts of G of the bodies.
     pub fn answers(self) -> Result<HashMap<usize, Coarse>> {
-        let answers = self.owed.answers::<Joined>()?.into_iter();
+        let answers = self.owed.answers::<Coarse>()?.into_iter();
         answers.map(|(p, answer)| Ok((p, answer.map_err(|e| e.body(p))?))).collect()
     }
 }

@@ -1,10 +1,10 @@
 //! Which bodies are joined by rows, directly or through other bodies: the islands of a problem.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use crate::constraints::{Friction, FrictionNode, RowKind, RowSet, Touched};
 use crate::error::Result;
+use crate::linalg::by_body::ranges;
 use crate::linalg::graph::joined;
 use crate::linalg::hash::{hash, same_bits, Shared, START};
 use crate::linalg::vector::power_of_two_below;
@@ -63,13 +63,8 @@ pub fn islands(model: &SolvedModel) -> Result<Vec<Island>> {
     let mut islands = vec![Island::empty(); count];
     let (mut start, mut shapes) = (filled(bodies, 0, WHAT)?, Shared::default());
     for (island, bodies) in islands.iter_mut().zip(members(count, of_body.iter().copied().zip(0..))) {
-        let mut end = 0;
-        let range = |&p: &usize| {
-            start[p] = end;
-            end += model.bodies[p].body.order;
-            start[p]..end
-        };
-        let ranges: Vec<Range<usize>> = bodies.iter().map(range).collect();
+        let ranges = ranges(bodies.iter().map(|&p| model.bodies[p].body.order));
+        bodies.iter().zip(&ranges).for_each(|(&p, range)| start[p] = range.start);
         let key = hash(START, ranges.iter().map(|range| range.end as u64));
         island.ranges = shapes.share(key, ranges, Vec::eq);
         island.bodies = bodies.into();

@@ -75,7 +75,7 @@ impl Problem {
         let Self { model, decomposition, prepared, .. } = self;
         let given = prepared.give(solved(model, decomposition), watch);
         given.map_err(|e| of_host(model, decomposition, e))?;
-        if let Some(of) = decomposition {
+        if let Some(of) = decomposition.as_mut().filter(|of| of.has_matrices) {
             of.let_go(prepared.gone(&of.model)?);
         }
         let ended = prepared.set_up(solved(model, decomposition), watch);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::body::alike::keys;
 use crate::body::elsewhere::asking::{Asking, Name};
 use crate::body::Body;
-use crate::ranks::{wire_struct, Ranks, Token};
+use crate::ranks::{wire_struct, Token};
 
 /// What is known of a body without its entries.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,13 +100,6 @@ impl Facts {
 }
 
 impl BodyElsewhere {
-    /// The question that gives a body to a rank, and what stands for it here.
-    pub fn giving(ranks: &Arc<Ranks>, rank: usize, body: &Body, facts: Facts) -> (Asking, Self) {
-        let name = ranks.token(rank);
-        let of = Give { name: name.number, body: body.without_load() };
-        (Asking::new(rank, Name::Give, of), Self { name, facts })
-    }
-
     /// The question for the body in an island, and its name there.
     pub fn entering(&self, touched: &[u32], unit: f64) -> (Asking, Token) {
         let member = self.token();

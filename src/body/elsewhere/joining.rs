@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::body::coarse::Coarse;
 use crate::body::elsewhere::asking::{Asking, Name};
 use crate::body::elsewhere::{Elsewhere, FormElsewhere};
 use crate::linalg::Csr;
@@ -51,9 +50,6 @@ pub struct Joining {
     pub asking: Asking,
     pub form: Option<Arc<FormElsewhere>>,
 }
-
-/// The answer.
-pub type Joined = Coarse;
 
 impl Elsewhere {
     /// `form`: the dual operator is to be made, assembled or not, for these of the rows.

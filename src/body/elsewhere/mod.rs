@@ -6,7 +6,7 @@ mod joining;
 
 pub use asking::{ask, Asking, Boundary, Entries, Multiply, Name, NullSpace, Owed, Solve, ABOUT_BODIES};
 pub use body::{Away, BodyElsewhere, Enter, Entered, Facts, Give, GiveLoad, HostLoad};
-pub use joining::{InIsland, Join, Joined, Joining};
+pub use joining::{InIsland, Join, Joining};
 
 use std::sync::Arc;
 

@@ -4,9 +4,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use crate::body::boundary::boundary;
+use crate::body::coarse::Coarse;
 use crate::body::elsewhere::{
-    Boundary, Enter, Entered, Entries, Give, GiveLoad, HostLoad, Join, Joined, Multiply, Name, NullSpace,
-    Solve,
+    Boundary, Enter, Entered, Entries, Give, GiveLoad, HostLoad, Join, Multiply, Name, NullSpace, Solve,
 };
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::given::Stiffness;
@@ -252,7 +252,7 @@ impl Bodies {
         Ok(x)
     }
 
-    fn join(&self, mut of: Join) -> Result<Joined> {
+    fn join(&self, mut of: Join) -> Result<Coarse> {
         let (name, with) = (of.member, self.kplus(of.kplus)?);
         if let Some(new) = of.form.take() {
             let form = Form::of(&with.kplus, &of.rows, new.explicit, new.rows)?;

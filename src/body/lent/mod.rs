@@ -15,7 +15,7 @@ pub use planned::{Analysis, NewKplus, PlanAway, Planned};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
 
-use crate::body::elsewhere::{ask, Asking, BodyElsewhere, Facts, Owed};
+use crate::body::elsewhere::{ask, Asking, BodyElsewhere, Facts, Give, Name, Owed};
 use crate::body::Body;
 use crate::error::Result;
 use crate::ranks::{Ranks, Traffic};
@@ -72,6 +72,8 @@ impl Lending {
 
     /// The question that gives a body to a rank, and what stands for it here.
     pub fn giving(&self, rank: usize, body: &Body, facts: Facts) -> (Asking, BodyElsewhere) {
-        BodyElsewhere::giving(&self.ranks, rank, body, facts)
+        let name = self.ranks.token(rank);
+        let of = Give { name: name.number, body: body.without_load() };
+        (Asking::new(rank, Name::Give, of), BodyElsewhere { name, facts })
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::body::Name;
 use crate::solve::local::Rigid;
-use crate::solver::tests::lent::{chains, served, solved, N};
-use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};
+use crate::solver::tests::lent::{chains, served, set_springs, solved, N};
+use crate::solver::{Problem, RowKind, RowsInput};
 
 /// Coordinates of a chain, printed to five digits.
 fn place(problem: &mut Problem, body: usize) {
@@ -86,27 +86,16 @@ fn unknowns_that_rows_hold_have_their_metric_on_other_ranks() {
     let answers = [served.lending(), None].map(|lending| {
         let mut problem = chains(&[4.0, 3.0, 2.0, 1.0], lending);
         let soft = [1.0, 1.0, 1.0, 1e-9];
-        let diagonal = |i: usize| soft.get(i).unwrap_or(&0.0) + if i > 0 { soft[i - 1] } else { 0.0 };
-        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
-        for i in 0..N {
-            if i > 0 {
-                col.push(i as i64 - 1);
-                val.push(-soft[i - 1]);
-            }
-            col.push(i as i64);
-            val.push(diagonal(i));
-            ptr.push(col.len());
-        }
-        let chain = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
-        let pilot = SparseInput { ptr: &[0, 1], col: &[0], val: &[1e-9], storage: Storage::Lower };
-        let [chain, pilot] = [(N, chain), (1, pilot)].map(|(n, k)| {
-            let body = problem.add_body(n).unwrap();
-            problem.set_stiffness(body, k).unwrap();
-            body as i64
-        });
+        let row = |i: usize| match i.checked_sub(1) {
+            Some(before) => (-soft[before], soft.get(i).unwrap_or(&0.0) + soft[before]),
+            None => (0.0, soft[0]),
+        };
+        let (chain, pilot) = (problem.add_body(N).unwrap(), problem.add_body(1).unwrap());
+        set_springs(&mut problem, chain, (0..N).map(row));
+        set_springs(&mut problem, pilot, [(0.0, 1e-9)].into_iter());
         assert_eq!((chain, pilot), (4, 5), "on ranks 2 and 0");
-        problem.set_load(5, &[-0.5]).unwrap();
-        let end = N as i64 - 1;
+        problem.set_load(pilot, &[-0.5]).unwrap();
+        let (chain, pilot, end) = (chain as i64, pilot as i64, N as i64 - 1);
         for (body, dof) in [([3, chain], [end, 0]), ([0, chain], [end, end]), ([chain, pilot], [end, 0])] {
             let rows = RowsInput { ptr: &[0, 2], body: Some(&body), dof: &dof, val: &[1.0, -1.0], rhs: None };
             problem.add_rows(RowKind::Equality, rows).unwrap();

@@ -51,16 +51,24 @@ fn set(problem: &mut Problem, body: usize, k: f64) {
 
 /// K of a body that consists of chains, the first of them held if `held`.
 fn set_chains(problem: &mut Problem, body: usize, stiffness: &[f64], held: bool) {
-    let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
-    for i in 0..N * stiffness.len() {
+    let row = |i: usize| {
         let (k, at) = (stiffness[i / N], i % N);
-        if at > 0 {
+        let is_free_end = (at == 0 && !(held && i == 0)) || at + 1 == N;
+        (if at > 0 { -k } else { 0.0 }, if is_free_end { k } else { 2.0 * k })
+    };
+    set_springs(problem, body, (0..N * stiffness.len()).map(row));
+}
+
+/// K of springs in a row: of each unknown the entry before the diagonal, if it is not 0, and that on it.
+fn set_springs(problem: &mut Problem, body: usize, rows: impl Iterator<Item = (f64, f64)>) {
+    let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+    for (i, (before, own)) in rows.enumerate() {
+        if before != 0.0 {
             col.push(i as i64 - 1);
-            val.push(-k);
+            val.push(before);
         }
         col.push(i as i64);
-        let is_free_end = (at == 0 && !(held && i == 0)) || at + 1 == N;
-        val.push(if is_free_end { k } else { 2.0 * k });
+        val.push(own);
         ptr.push(col.len());
     }
     let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
@@ -339,20 +347,13 @@ fn bars(n: usize, lending: Option<Lending>) -> Problem {
     problem.prepared.lending = lending;
     for p in 0..6 {
         let body = problem.add_body(n).unwrap();
-        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
-        for i in 0..n as i64 {
-            if i > 0 {
-                col.push(i - 1);
-                val.push(-1.0 - p as f64 / 16.0);
-            }
-            col.push(i);
-            let ends = usize::from(i == 0) + usize::from(i + 1 == n as i64);
-            val.push((2 - ends) as f64 * (1.0 + p as f64 / 16.0) + if p == 0 && i == 0 { 1.0 } else { 0.0 });
-            ptr.push(col.len());
-        }
-        problem
-            .set_stiffness(body, SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower })
-            .unwrap();
+        let k = 1.0 + p as f64 / 16.0;
+        let row = |i: usize| {
+            let ends = usize::from(i == 0) + usize::from(i + 1 == n);
+            let ground = if p == 0 && i == 0 { 1.0 } else { 0.0 };
+            (if i > 0 { -k } else { 0.0 }, (2 - ends) as f64 * k + ground)
+        };
+        set_springs(&mut problem, body, (0..n).map(row));
         let mut f = vec![0.0; n];
         f[n - 1] = -1.0;
         problem.set_load(body, &f).unwrap();
