@@ -54,6 +54,8 @@ pub enum Proof {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Place {
     pub base: i64,
+    /// The rank that has it, if the host has given its problem on several.
+    pub rank: Option<usize>,
     pub body: Option<usize>,
     pub component: Option<usize>,
     pub element: Option<usize>,
@@ -61,6 +63,8 @@ pub struct Place {
     /// Node with friction.
     pub node: Option<usize>,
     pub row: Option<usize>,
+    /// The kind of the row: 0, 1, 2 for contact, equality, tangential rows.
+    pub kind: Option<usize>,
     pub entry: Option<usize>,
     /// Position in a text or a file.
     pub byte: Option<usize>,
@@ -97,6 +101,10 @@ impl fmt::Display for Place {
             ("byte", self.byte),
         ];
         let mut separator = "";
+        if let Some(rank) = self.rank {
+            write!(out, "rank {rank}")?;
+            separator = ", ";
+        }
         for (name, number) in parts {
             let Some(number) = number else { continue };
             let number = i64::try_from(number).unwrap_or(i64::MAX).saturating_add(self.base);
@@ -142,11 +150,13 @@ impl Error {
 
     with_places! {
         body: usize,
+        rank: usize,
         component: usize,
         element: usize,
         dof: usize,
         node: usize,
         row: usize,
+        kind: usize,
         entry: usize,
         byte: usize,
         /// The number found is the index `index`, from 0.

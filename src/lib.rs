@@ -80,6 +80,7 @@ mod decomposition;
 #[doc(hidden)]
 pub mod dual;
 pub mod error;
+mod gathering;
 #[doc(hidden)]
 pub mod linalg;
 mod mesh;

@@ -2,6 +2,8 @@
 
 mod battery;
 mod coulomb;
+#[cfg(feature = "loopback")]
+mod dealt;
 mod friction;
 mod liars;
 mod scales;

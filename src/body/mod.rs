@@ -55,8 +55,8 @@ pub use boundary::{boundary, diagonal, dirichlet_bytes, Inside};
 pub use coarse::Coarse;
 pub use digits::Digits;
 pub use elsewhere::{
-    ask, Asking, Away, BodyElsewhere, Elsewhere, Entered, Facts, FormElsewhere, HostLoad, InIsland, Joining,
-    Name, Owed, ABOUT_BODIES,
+    ask, Asking, Away, BodyElsewhere, BodyThere, Elsewhere, Entered, Facts, FormElsewhere, GivenThere,
+    HostLoad, InIsland, Joining, LoadThere, Name, Owed, PartThere, ABOUT_BODIES,
 };
 pub use generalized_inverse::{Factorised, GeneralizedInverse};
 pub use given::Stiffness;
@@ -80,7 +80,7 @@ pub use values::{Form, Places};
 
 use std::sync::Arc;
 
-use crate::linalg::vector::power_of_two_below;
+use crate::linalg::vector::{norm_max, power_of_two_below};
 use crate::linalg::Symmetric;
 
 /// `K_p` that is not one matrix here.
@@ -91,7 +91,9 @@ pub enum OtherForm {
     /// The sum of the matrices of pieces.
     Assembled(Arc<Assembled>),
     /// Another rank has it, with all that the host has told of it.
-    Elsewhere(Arc<BodyElsewhere>),
+    Elsewhere(BodyThere),
+    /// The host has given it on another rank.
+    Given(Box<GivenThere>),
 }
 
 /// The input of the host for one body, in the host's units.
@@ -122,7 +124,7 @@ impl Body {
         matrix.or_else(|| match self.other.as_deref()? {
             OtherForm::Operator(k) => Some(Stiffness::Host(k)),
             OtherForm::Assembled(k) => Some(Stiffness::Assembled(k)),
-            OtherForm::Elsewhere(_) => None,
+            OtherForm::Elsewhere(_) | OtherForm::Given(_) => None,
         })
     }
 
@@ -142,8 +144,33 @@ impl Body {
 
     pub fn elsewhere(&self) -> Option<&Arc<BodyElsewhere>> {
         match self.other.as_deref() {
-            Some(OtherForm::Elsewhere(there)) => Some(there),
+            Some(OtherForm::Elsewhere(there)) => Some(&there.of),
             _ => None,
+        }
+    }
+
+    /// What the host has given on another rank.
+    pub fn given_there(&self) -> Option<&GivenThere> {
+        match self.other.as_deref() {
+            Some(OtherForm::Given(there)) => Some(there),
+            _ => None,
+        }
+    }
+
+    /// Its load, if the host has given it on another rank.
+    pub fn load_there(&self) -> Option<&LoadThere> {
+        match self.other.as_deref() {
+            Some(OtherForm::Elsewhere(there)) => there.load.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// `max |f_j|`, force; none without a load.
+    pub fn largest_load(&self) -> Option<f64> {
+        match self.other.as_deref() {
+            Some(OtherForm::Elsewhere(BodyThere { load: Some(load), .. })) => load.largest,
+            Some(OtherForm::Given(there)) => there.largest_load(),
+            _ => self.load.as_deref().map(norm_max),
         }
     }
 
@@ -200,7 +227,7 @@ impl Body {
     /// Nothing but the load remains of a body that another rank has.
     pub fn let_go(&mut self, there: Arc<BodyElsewhere>) {
         let (order, load) = (self.order, self.load.take());
-        let other = Some(Box::new(OtherForm::Elsewhere(there)));
+        let other = Some(Box::new(OtherForm::Elsewhere(BodyThere { of: there, load: None })));
         *self = Self { order, load, other, ..Self::default() };
     }
 

@@ -9,13 +9,15 @@ pub struct Entry {
     pub ratio: f64,
     /// Body, row or node with friction; none if nothing is violated, and for the duality gap.
     pub place: Option<usize>,
+    /// The rank whose number it is.
+    pub rank: usize,
 }
 
 impl Entry {
     /// `limit`: no unit.
     pub(super) fn new(ratio: f64, limit: f64, place: Option<usize>) -> Self {
         // a ratio of 0 has no place; NaN has one
-        Self { figure: limit * ratio, ratio, place: place.filter(|_| ratio != 0.0) }
+        Self { figure: limit * ratio, ratio, place: place.filter(|_| ratio != 0.0), rank: 0 }
     }
 
     /// Replaces this entry if `other` is worse; if both are equal, it stays.

@@ -164,7 +164,7 @@ impl RowSet {
         match (0..self.len()).find(|&i| scales[i] == 0.0 && !self.is_empty_row(i)) {
             Some(i) => {
                 let what = format!("the square of this {}, b D^-1 b', over- or underflows", kind.name());
-                Err(Error::new(Kind::Overflow, what).row(i))
+                Err(Error::new(Kind::Overflow, what).row(i).kind(kind as usize))
             }
             None => Ok(()),
         }
@@ -217,6 +217,7 @@ impl RowSet {
         match (0..self.len()).find(|&i| empty(i) && fails(i)) {
             Some(i) => Err(Error::new(Kind::GapsContradict, format!("this {} has no entries", kind.name()))
                 .row(i)
+                .kind(kind as usize)
                 .value(self.rhs[i])
                 .limit(rounding)),
             None => Ok(()),

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::body::{pattern_key, same_matrix, value_key, Body};
+use crate::body::{pattern_key, same_matrix, value_key, Body, GivenThere, OtherForm, PartThere};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, Shared};
 use crate::linalg::Symmetric;
 use crate::mesh::{Mesh, Piece};
-use crate::model::{GivenBody, HostModel, Joint, Part, Parts, SolvedModel};
+use crate::model::{GivenBody, HostModel, Joint, Part, Parts, SolvedModel, NAMED};
 use crate::platform::memory::{filled, reserved, zeros};
 
 use super::components::{slight, Component, Components, Connected};
@@ -30,7 +30,9 @@ pub fn parts(
         let mut split = Split { given, body, held, first: host.offsets[body], loose: &mut all.loose };
         let pieces =
             given.mesh.as_deref().and_then(Mesh::pieces).filter(|_| given.body.assembled().is_some());
+        let there = given.body.given_there();
         split_bodies.extend(match (pieces, connected.components(body), given.body.stiffness.as_deref()) {
+            _ if there.is_some() => there.map(|there| split.there(there)).transpose()?.unwrap_or_default(),
             (Some(pieces), ..) => split.pieces(pieces).map_err(|e| e.body(body))?,
             (None, Some(components), Some(k)) => split.components(components, k).map_err(|e| e.body(body))?,
             _ => vec![split.whole()?],
@@ -68,7 +70,8 @@ struct MadePart {
 pub fn touched(host: &HostModel, joints: &[Joint]) -> Result<Vec<bool>> {
     let mut touched = filled(host.sizes().dofs, false, WHAT)?;
     for rows in [&host.contact, &host.equalities, &host.friction.rows] {
-        (0..rows.len()).flat_map(|i| rows.matrix.row(i)).for_each(|(j, _)| touched[j] = true);
+        let own = (0..rows.len()).flat_map(|i| rows.matrix.row(i)).map(|(j, _)| j);
+        own.filter(|j| *j < NAMED).for_each(|j| touched[j] = true);
     }
     joints.iter().flat_map(|joint| joint.ends).for_each(|j| touched[j] = true);
     for (given, first) in host.bodies.iter().zip(&host.offsets) {
@@ -98,6 +101,19 @@ impl Split<'_> {
         dofs.extend(0..own.order as u32);
         let part = Part { body: self.body, piece: 0, whole: true };
         Ok(MadePart { own, part, dofs: dofs.into(), shares: Vec::new() })
+    }
+
+    /// A body on another rank, where its parts have been made.
+    fn there(&mut self, GivenThere { parts, loose }: &GivenThere) -> Result<Vec<MadePart>> {
+        self.loose.extend(loose.iter().map(|dof| self.first + *dof as usize));
+        let made = parts.iter().map(|PartThere { order, dofs, there }| {
+            let other = Some(Box::new(OtherForm::Elsewhere(there.clone())));
+            let own = Body { order: *order, other, ..Body::default() };
+            let part = Part { body: self.body, piece: 0, whole: dofs.is_none() };
+            let dofs = dofs.clone().unwrap_or_else(|| (0..*order as u32).collect());
+            MadePart { own, part, dofs, shares: Vec::new() }
+        });
+        Ok(made.collect())
     }
 
     /// A body of several components. At least one part remains.
@@ -206,6 +222,12 @@ pub fn loads(
     model: &mut SolvedModel,
 ) -> Result<()> {
     for (body, given) in host.bodies.iter().enumerate() {
+        if let Some(GivenThere { parts: given, .. }) = given.body.given_there() {
+            for (part, PartThere { there, .. }) in parts.of(body).zip(given) {
+                model.bodies[part].body.other = Some(Box::new(OtherForm::Elsewhere(there.clone())));
+            }
+            continue;
+        }
         let Some(load) = &given.body.load else {
             parts.of(body).for_each(|part| model.bodies[part].body.load = None);
             continue;

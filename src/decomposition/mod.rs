@@ -35,8 +35,9 @@ pub struct Decomposition {
 impl Decomposition {
     /// Some body has several parts, or unknowns of several bodies are glued; otherwise the host's model itself is solved.
     pub fn is_due(host: &HostModel, connected: &Connected) -> bool {
-        let is_cut = |given: &GivenBody| given.body.assembled().is_some();
-        host.shares_numbers() || !connected.all_connected() || host.bodies.iter().any(is_cut)
+        let has_parts =
+            |GivenBody { body, .. }: &GivenBody| body.assembled().is_some() || body.given_there().is_some();
+        host.has_joints() || !connected.all_connected() || host.bodies.iter().any(has_parts)
     }
 
     pub fn of(host: &HostModel, connected: &Connected) -> Result<Self> {
@@ -60,6 +61,28 @@ impl Decomposition {
         Ok(made)
     }
 
+    /// The parts of bodies without rows: rows of other ranks touch unknowns, too. `places`: those they touch, among all unknowns.
+    pub fn of_part(
+        host: &HostModel,
+        connected: &Connected,
+        places: impl Iterator<Item = usize>,
+    ) -> Result<Self> {
+        let mut touched = touched(host, &host.joints()?)?;
+        places.for_each(|j| touched[j] = true);
+        let (bodies, all) = parts(host, connected, &|j| touched[j])?;
+        let copies = host.bodies.iter().map(|_| None).collect();
+        let mut model = SolvedModel::new();
+        model.offsets.clone_from(&all.starts);
+        (model.bodies, model.parts) = (bodies, Some(Arc::new(all)));
+        Ok(Self { model, copies, of: host.revisions, has_matrices: true })
+    }
+
+    /// Takes over the loads of the host.
+    pub fn refresh_loads(&mut self, host: &HostModel) -> Result<()> {
+        let Some(parts) = self.model.parts.clone() else { return Ok(()) };
+        loads(host, &parts, &self.copies, &mut self.model)
+    }
+
     /// Whether bodies and rows are still those of the host, and no load acts on an unknown that is in no part.
     pub fn is_of(&self, host: &HostModel) -> bool {
         let loose = self.model.parts.iter().flat_map(|parts| &parts.loose);
@@ -80,6 +103,6 @@ impl Decomposition {
         self.model.equalities.rhs[..parts.equalities].copy_from_slice(&host.equalities.rhs);
         self.model.friction.rows.rhs.copy_from_slice(&host.friction.rows.rhs);
         self.model.friction.nodes.clone_from(&host.friction.nodes);
-        loads(host, &parts, &self.copies, &mut self.model)
+        self.refresh_loads(host)
     }
 }

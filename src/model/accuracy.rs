@@ -7,7 +7,7 @@ use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::hash::{hash, START};
 use crate::linalg::sparse::csr::by_columns;
-use crate::linalg::vector::{norm_max, NOISE};
+use crate::linalg::vector::NOISE;
 use crate::model::contents::{GivenBody, SolvedModel};
 use crate::model::row_sets::empty_row_contradicts;
 use crate::numbers::data::{MARGINAL, MOST_BY_COORDINATES};
@@ -42,11 +42,11 @@ pub struct Lengths<'a> {
 }
 
 impl SolvedModel {
-    /// The load of a body, if it is more than 64 eps of the largest.
-    pub fn loads_that_count<'a>(&'a self) -> impl Fn(usize) -> Option<&'a [f64]> {
-        let loads = self.bodies.iter().filter_map(|given| given.body.load.as_ref());
-        let least = NOISE * loads.map(|load| norm_max(load)).fold(0.0, f64::max);
-        move |body| self.bodies[body].body.load.as_deref().filter(|load| norm_max(load) > least)
+    /// Whether the load of a body is more than 64 eps of the largest.
+    pub fn loads_that_count(&self) -> impl Fn(usize) -> bool + '_ {
+        let largest = |given: &GivenBody| given.body.largest_load();
+        let least = NOISE * self.bodies.iter().filter_map(largest).fold(0.0, f64::max);
+        move |body| self.bodies[body].body.largest_load().is_some_and(|largest| largest > least)
     }
 
     /// Some row demands a motion, or has no entries.

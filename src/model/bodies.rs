@@ -155,7 +155,7 @@ impl HostModel {
                 let what = "the matrix of this element has not been given";
                 return Err(Error::new(Kind::State, what).body(p).element(element));
             }
-            if body.k().is_none() {
+            if body.k().is_none() && body.given_there().is_none() {
                 return refused(p, "the stiffness matrix has not been given");
             }
             if body.operator().is_some() && body.null_space.is_none() && body.coordinates.is_none() {

@@ -5,14 +5,21 @@ use std::ops::{Deref, DerefMut};
 
 use crate::error::Result;
 use crate::model::contents::SolvedModel;
+use crate::model::parts::Joint;
 use crate::model::settings::Settings;
 
 /// All input of the host. Every call checks its input first and stores all of it or nothing; what is stored changes by these
 /// calls alone, so that the revisions tell what is out of date.
 pub struct HostModel {
-    pub(super) contents: SolvedModel,
+    pub(crate) contents: SolvedModel,
     /// Body and dof of every unknown number of the host.
     pub unknowns: HashMap<usize, (usize, usize)>,
+    /// The joints of bodies on several ranks, whose numbers are there.
+    pub joined: Option<Vec<Joint>>,
+    /// Other ranks may have the unknowns of a number: rows that name it keep the number.
+    pub has_others: bool,
+    /// Increased if the numbers of a body change.
+    pub numberings: u64,
 }
 
 /// Without parts it is the model that is solved.
@@ -32,7 +39,13 @@ impl DerefMut for HostModel {
 
 impl HostModel {
     pub fn new() -> Self {
-        Self { contents: SolvedModel::new(), unknowns: HashMap::new() }
+        Self {
+            contents: SolvedModel::new(),
+            unknowns: HashMap::new(),
+            joined: None,
+            has_others: false,
+            numberings: 0,
+        }
     }
 
     pub fn settings(&self) -> &Settings {

@@ -4,22 +4,22 @@ use std::collections::HashMap;
 
 use crate::error::{Error, Kind, Result};
 use crate::model::host::HostModel;
+use crate::model::parts::Joint;
 use crate::platform::memory::{refusal, reserved};
 
 const WHAT: &str = "unknowns with one number";
 
-/// Two unknowns that move together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Joint {
-    /// Their number.
-    pub number: usize,
-    /// Their positions among the unknowns of all bodies one after the other, ascending.
-    pub ends: [usize; 2],
-}
-
 impl HostModel {
+    /// Whether unknowns move together.
+    pub fn has_joints(&self) -> bool {
+        self.joined.as_ref().map_or_else(|| self.shares_numbers(), |joints| !joints.is_empty())
+    }
+
     /// For every number one joint fewer than unknowns that have it: each joins the unknown to that of the previous body.
     pub fn joints(&self) -> Result<Vec<Joint>> {
+        if let Some(joints) = &self.joined {
+            return Ok(joints.clone());
+        }
         let numbered = self.bodies.iter().filter_map(|given| given.numbers.as_deref());
         let count = numbered.map(<[usize]>::len).sum::<usize>() - self.unknowns.len();
         let (mut joints, mut last) = (reserved(count, WHAT)?, HashMap::new());

@@ -9,6 +9,9 @@ use crate::platform::memory::{refusal, reserved};
 /// The smallest number that is too large for an index of an array.
 const TOO_LARGE: usize = isize::MAX as usize / size_of::<f64>();
 
+/// Of rows whose unknowns may be on other ranks, columns from here on are numbers of the host.
+pub const NAMED: usize = TOO_LARGE.next_power_of_two();
+
 impl HostModel {
     /// The numbers of a body, distinct over all bodies; if glue is allowed, distinct within each body.
     fn checked_numbers(&self, body: usize, numbers: &[i64]) -> Result<Vec<usize>> {
@@ -55,6 +58,7 @@ impl HostModel {
             }
         }
         bodies[body].numbers = Some(numbers.into());
+        self.numberings += 1;
         // a number that the body no longer uses may belong to other bodies
         let claiming = if was_shared { 0..bodies.len() } else { body..body + 1 };
         for p in claiming {
@@ -155,12 +159,18 @@ impl HostModel {
     /// Positions of the unknowns of rows, which begin at `ptr`, among the unknowns of all bodies one after the other;
     /// none if the host has not given numbers.
     pub fn places_of(&self, ptr: &[usize], numbers: &[i64]) -> Result<Option<Vec<i64>>> {
-        if !self.is_numbered()? {
+        if !self.is_numbered()? && !(self.has_others && self.bodies.is_empty()) {
             return Ok(None);
         }
         let mut places = reserved(numbers.len(), "constraint rows")?;
+        let named = |number: &usize| self.has_others && *number < TOO_LARGE;
         for (entry, &number) in numbers.iter().enumerate() {
-            let found = usize::try_from(number).ok().and_then(|number| self.unknowns.get(&number));
+            let number_of = usize::try_from(number).ok();
+            if let Some(number) = number_of.filter(named) {
+                places.push((NAMED + number) as i64);
+                continue;
+            }
+            let found = number_of.and_then(|number| self.unknowns.get(&number));
             let Some((body, dof)) = found else {
                 let row = ptr.partition_point(|&start| start <= entry) - 1;
                 let error = Error::argument("dof", format!("no unknown has the number {INDEX}"))

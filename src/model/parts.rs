@@ -45,6 +45,15 @@ pub struct Part {
     pub whole: bool,
 }
 
+/// Two unknowns that move together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Joint {
+    /// Their number.
+    pub number: usize,
+    /// Their positions among the unknowns of all bodies one after the other, ascending.
+    pub ends: [usize; 2],
+}
+
 impl Parts {
     /// Parts of a body of the host.
     pub fn of(&self, body: usize) -> Range<usize> {
@@ -65,6 +74,11 @@ impl Parts {
     pub fn place(&self, part: usize, i: usize) -> (usize, f64) {
         let at = self.starts[part] + i;
         (self.dofs[at] as usize, self.shares.get(at).copied().unwrap_or(1.0))
+    }
+
+    /// The unknowns of a part within its body, ascending.
+    pub fn dofs_of(&self, part: usize) -> &[u32] {
+        &self.dofs[self.starts[part]..self.starts[part + 1]]
     }
 
     /// The only part of a body, if it has all unknowns of the body.

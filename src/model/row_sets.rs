@@ -17,7 +17,9 @@ impl HostModel {
         };
         let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
         let offsets = std::mem::take(&mut self.offsets);
-        let added = self.rows_mut(kind).add(kind, rows, &offsets);
+        let all = [0, usize::MAX];
+        let of = if self.has_others && places.is_some() { &all[..] } else { &offsets[..] };
+        let added = self.rows_mut(kind).add(kind, rows, of);
         self.offsets = offsets;
         let first = added?;
         self.revisions.rows += 1;
@@ -51,8 +53,10 @@ impl HostModel {
             None => self.places_of(input.rows.ptr, input.rows.dof)?,
         };
         let rows = RowsInput { dof: places.as_deref().unwrap_or(input.rows.dof), ..input.rows };
+        let (all, is_named) = ([0, usize::MAX], self.has_others && places.is_some());
         let SolvedModel { friction, contact, offsets, .. } = &mut self.contents;
-        let first = friction.add(FrictionInput { rows, ..input }, contact, offsets)?;
+        let of = if is_named { &all[..] } else { &offsets[..] };
+        let first = friction.add(FrictionInput { rows, ..input }, contact, of)?;
         self.revisions.rows += 1;
         Ok(first)
     }

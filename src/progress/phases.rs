@@ -37,6 +37,18 @@ pub struct PhaseReport {
     pub bytes: usize,
 }
 
+impl PhaseReport {
+    /// Its place in the order of the phases.
+    pub fn place(&self) -> usize {
+        NAMES.iter().position(|name| *name == self.name).unwrap_or(NAMES.len())
+    }
+
+    /// The phase at a place.
+    pub fn at(place: usize, seconds: f64, bytes: usize) -> Option<Self> {
+        NAMES.get(place).map(|name| Self { name, seconds, bytes })
+    }
+}
+
 /// Wall time and bytes of every phase.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Phases {

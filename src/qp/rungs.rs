@@ -76,6 +76,16 @@ impl std::ops::Add for Tries {
 }
 
 impl Tries {
+    /// How often each was made.
+    pub fn all(&self) -> &[u32] {
+        &self.0
+    }
+
+    /// None for another number of second tries.
+    pub fn from_all(all: &[u32]) -> Option<Self> {
+        all.try_into().ok().map(Self)
+    }
+
     /// Names and numbers of the second tries made.
     pub fn made(&self) -> impl Iterator<Item = (&'static str, u32)> + '_ {
         Rung::ALL.iter().map(|(rung, name, _)| (*name, self.0[*rung as usize])).filter(|made| made.1 > 0)

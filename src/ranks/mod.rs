@@ -46,6 +46,8 @@ pub struct Ranks {
     closed: AtomicBool,
     /// Requests and tokens so far.
     serial: AtomicU64,
+    /// Problems so far.
+    problems: AtomicU64,
     /// Tokens, with their ranks, that rank 0 no longer has.
     dropped: Mutex<Vec<(usize, u64)>>,
     traffic: Mutex<Traffic>,
@@ -95,6 +97,7 @@ impl Ranks {
             busy: AtomicBool::new(false),
             closed: AtomicBool::new(false),
             serial: AtomicU64::new(0),
+            problems: AtomicU64::new(0),
             dropped: Mutex::default(),
             traffic: Mutex::default(),
         })
@@ -107,6 +110,21 @@ impl Ranks {
 
     pub fn traffic(&self) -> Traffic {
         *lock(&self.traffic)
+    }
+
+    /// The number of a new problem on this stream.
+    pub fn next_problem(&self) -> u64 {
+        self.problems.fetch_add(1, Ordering::Relaxed)
+    }
+
+    /// The first of so many new names, which a rank will give.
+    pub fn block(&self, count: u64) -> u64 {
+        self.serial.fetch_add(count, Ordering::Relaxed)
+    }
+
+    /// The name that a rank has given.
+    pub fn named(self: &Arc<Self>, rank: usize, number: u64) -> Token {
+        Token { ranks: Arc::clone(self), rank, number }
     }
 
     /// A new name for something that a rank will keep.

@@ -339,12 +339,14 @@ impl Wire for Error {
 
 wire_struct!(Place {
     base,
+    rank,
     body,
     component,
     element,
     dof,
     node,
     row,
+    kind,
     entry,
     byte,
     index,

@@ -15,7 +15,23 @@ use crate::error::{Error, Kind, Result};
 use crate::platform::interrupt::Interrupt;
 use crate::platform::shortage::RunningCall;
 use crate::platform::threads;
-use crate::ranks::{Incoming, Ranks, END};
+use crate::ranks::{message, Incoming, Ranks, END};
+
+/// The first request of a call that all ranks make.
+pub const BEGIN: u32 = 2;
+
+/// A rank other than 0 on a stream, and what it keeps for rank 0.
+#[derive(Clone)]
+pub struct Rank {
+    pub ranks: Arc<Ranks>,
+    pub bodies: Arc<Bodies>,
+}
+
+impl Rank {
+    pub fn new(ranks: Arc<Ranks>) -> Self {
+        Self { ranks, bodies: Arc::new(Bodies::new(taken)) }
+    }
+}
 
 /// On ranks other than 0: answers rank 0, for all its problems, until rank 0 calls it too. `threads`: as option `threads`.
 pub fn serve(ranks: &Arc<Ranks>, threads: i64) -> Result<()> {
@@ -55,6 +71,8 @@ pub fn answer(bodies: &Bodies, incoming: &Incoming, threads: usize) -> Result<Ve
     };
     match incoming.question {
         ABOUT_BODIES => interrupt.during(|| bodies.answer(&incoming.message, threads)),
+        // this rank serves
+        BEGIN => Ok(message(&None::<()>)),
         _ => Err(Error::new(Kind::Internal, "a question that a rank does not know")),
     }
 }

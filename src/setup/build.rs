@@ -283,7 +283,7 @@ fn check_compliance(island: &Island) -> Result<()> {
         let Members { numbers, rows } = island.members(kind);
         if let Some(row) = rows.compliance.iter().position(|c| !(c * island.unit).is_finite()) {
             let what = format!("the compliance of this {} times max K_ii overflows", kind.name());
-            let error = Error::new(Kind::Overflow, what).row(numbers[row]);
+            let error = Error::new(Kind::Overflow, what).row(numbers[row]).kind(kind as usize);
             return Err(error.value(rows.compliance[row]));
         }
     }

@@ -31,11 +31,21 @@ impl Prepared {
         if self.lending.is_none() || self.is_up_to_date(model) {
             return Ok(());
         }
+        self.find_given(model);
         self.find_keys(model)?;
         let same = |p: usize, q: usize| same_body(&model.bodies[p].body, &model.bodies[q].body);
         let equal = classes(self.bodies.len(), |p| self.bodies[p].keys, same);
         let ranks = self.lend(model, &equal)?;
         self.send(model, (&equal, &ranks), watch)
+    }
+
+    /// Bodies that the host has given on other ranks.
+    fn find_given(&mut self, model: &SolvedModel) {
+        for (own, given) in self.bodies.iter_mut().zip(&model.bodies).filter(|(own, _)| own.there.is_none()) {
+            let Some(of) = given.body.elsewhere() else { continue };
+            own.rank = Some(of.name.rank as u32);
+            own.there = Some(Box::new(There { of: Arc::clone(of), load: Mutex::default() }));
+        }
     }
 
     /// Sends every rank its bodies, equal ones once.
@@ -76,9 +86,10 @@ impl Prepared {
 
     /// What other ranks have in place of bodies, which need not be here. Parts in islands with pieces are needed here, too.
     pub fn gone(&self, model: &SolvedModel) -> Result<Vec<(usize, Arc<BodyElsewhere>)>> {
+        let is_here = |p: usize| model.bodies[p].body.elsewhere().is_none();
         let there =
             self.bodies.iter().enumerate().filter_map(|(p, own)| Some((p, own.there.as_ref()?.of.clone())));
-        let mut gone: Vec<_> = there.collect();
+        let mut gone: Vec<_> = there.filter(|(p, _)| is_here(*p)).collect();
         if !gone.is_empty() {
             let stays = beside_pieces(model)?;
             gone.retain(|(p, _)| stays.get(*p) != Some(&true));
@@ -100,6 +111,9 @@ impl Prepared {
             all.clone().rev().filter_map(|p| Some((equal[p], rank(p)?))).collect();
         let given: Vec<Option<usize>> =
             all.clone().map(|p| rank(p).or_else(|| of_class.get(&equal[p]).copied())).collect();
+        if !lending.lends {
+            return Ok(given.into_iter().map(|rank| rank.unwrap_or(0)).collect());
+        }
         // no row of the dual is known yet: one for each unknown that a row touches
         let rows: Vec<DistinctRows> =
             touched(model).into_iter().map(|rows| DistinctRows { rows, places: rows }).collect();

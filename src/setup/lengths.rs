@@ -46,7 +46,7 @@ fn lengths<'a, 'b>(
         };
         let held = led(&trace, RowKind::ALL.map(|kind| &island.members(kind).rows), &|_, _| true, 1.0)?;
         let way = |at: usize| Way {
-            counts: loads(island.bodies[at]).is_some(),
+            counts: loads(island.bodies[at]),
             held: held[island.touched.range(at)].to_vec(),
         };
         let given = prepared.loads(model, (&island.bodies, &bodies))?;

@@ -38,7 +38,7 @@ impl Prepared {
         Ok(Locals::new(bodies.iter().enumerate().map(seen).collect::<Result<_>>()?, model.threads()))
     }
 
-    /// The loads of these bodies; one that another rank does not have yet is sent.
+    /// The loads of these bodies; one of rank 0 that another rank does not have yet is sent.
     pub fn loads(
         &self,
         model: &SolvedModel,
@@ -49,7 +49,11 @@ impl Prepared {
         let there = |k: usize| self.bodies[bodies[k]].there.as_deref();
         let known = |there: &There| there.load.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let (mut questions, mut new) = (Vec::new(), HashMap::new());
+        let given_there = |k: usize| model.bodies[bodies[k]].body.load_there();
         for (k, there) in (0..bodies.len()).filter_map(|k| Some((k, there(k)?))) {
+            if given_there(k).is_some() {
+                continue;
+            }
             let key = given(k).map(|f| hash(START, f.iter().map(|f| f.to_bits())));
             if known(there).is_none_or(|known| known.0 != key) {
                 let (asking, name) = there.of.giving_load(load(k));
@@ -62,7 +66,10 @@ impl Prepared {
             let of = there(k).ok_or_else(without_ranks)?;
             *of.load.lock().unwrap_or_else(PoisonError::into_inner) = new.remove(&k);
         }
-        let name = |k: usize| Ok(known(there(k).ok_or_else(without_ranks)?).ok_or_else(without_ranks)?.1);
+        let name = |k: usize| match given_there(k) {
+            Some(load) => Ok(Arc::clone(&load.name)),
+            None => Ok(known(there(k).ok_or_else(without_ranks)?).ok_or_else(without_ranks)?.1),
+        };
         locals.kept(|k| HostLoad(load(k)), name)
     }
 

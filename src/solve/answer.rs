@@ -36,6 +36,19 @@ pub struct Answer {
     pub failed: Vec<bool>,
     /// G' of each island without resistance that is noise of the data, if it differs.
     pub cleaned: Vec<Option<Box<Csr>>>,
+    /// Bodies of the host in islands without an answer.
+    pub without: Vec<bool>,
+    /// If other ranks have rows, too: what all rows do to the bodies.
+    pub pushes: Option<Box<Pushes>>,
+}
+
+/// What rows do to unknowns: their forces times their entries, row after row.
+#[derive(Clone, Default)]
+pub struct Pushes {
+    /// Of contact, equality and tangential rows.
+    pub of_rows: Vec<Vec<(usize, f64)>>,
+    /// Of the glue of unknowns with one number.
+    pub of_glue: Vec<(usize, f64)>,
 }
 
 /// How the islands ended, each with an answer or with the named reason why it has none; of the answers only what
@@ -72,6 +85,8 @@ impl<'a> Ends<'a> {
             force_errors: vec![f64::NAN; counts.bodies],
             failed: Vec::new(),
             cleaned: Vec::new(),
+            without: Vec::new(),
+            pushes: None,
         };
         let (islands, recovery) = (&prepared.done(model)?.islands[..], Duration::ZERO);
         Ok(Self { model, islands, answer, certificate: None, failure: None, recovery })

@@ -101,7 +101,7 @@ fn without_force(host: &HostModel, lambda: &[f64], worst: Entry) -> Entry {
         known && !(off <= host.settings.certificate_tolerance * force)
     };
     match rows.forces_without_entries(RowKind::Inequality).enumerate().find(|row| wrong(*row)) {
-        Some((row, _)) => Entry { figure: f64::INFINITY, ratio: f64::INFINITY, place: Some(row) },
+        Some((row, _)) => Entry { figure: f64::INFINITY, ratio: f64::INFINITY, place: Some(row), rank: 0 },
         None => worst,
     }
 }

@@ -36,7 +36,7 @@ pub struct Findings {
     /// Bodies with motions of small positive or negative stiffness.
     pub soft: Vec<usize>,
     /// Number of contact rows.
-    contact: usize,
+    pub(super) contact: usize,
 }
 
 impl Findings {
@@ -89,6 +89,12 @@ impl Findings {
             soft: soft(model, prepared),
             contact: model.contact.len(),
         }
+    }
+
+    /// The motion of a proof on its body, if this rank has it.
+    pub fn own_motion(&self, host: &HostModel) -> Option<[f64; 6]> {
+        let Some(Proof::Motion { v, .. }) = &self.proof else { return None };
+        rigid_motion(host, self.place.body?, v)
     }
 
     /// How clearly the problem has no solution.
@@ -153,13 +159,9 @@ fn untouched(host: &HostModel) -> Vec<usize> {
             touched[host.offsets[1..].partition_point(|end| *end <= j)] = true;
         }
     }
-    if host.shares_numbers() {
-        for (body, given) in host.bodies.iter().enumerate() {
-            let first = |number| host.unknowns.get(number).map(|unknown| unknown.0);
-            for other in given.numbers.iter().flatten().filter_map(first).filter(|other| *other != body) {
-                (touched[body], touched[other]) = (true, true);
-            }
-        }
+    let joints = host.joints().unwrap_or_default();
+    for j in joints.iter().flat_map(|joint| joint.ends) {
+        touched[host.offsets[1..].partition_point(|end| *end <= j)] = true;
     }
     (0..touched.len()).filter(|&body| !touched[body]).collect()
 }

@@ -68,6 +68,11 @@ impl History {
         self.current = Some(Current::new(answer, made));
     }
 
+    /// Start values of the host, which are used only once.
+    pub fn given_start(&mut self) -> Vec<Option<Vec<f64>>> {
+        std::mem::take(&mut self.start).into()
+    }
+
     /// The start of the next solve: the given values, which are used only once, otherwise the last answer if `previous`.
     pub fn take_start(&mut self, previous: bool) -> Start {
         let given = std::mem::take(&mut self.start);

@@ -7,6 +7,7 @@ mod findings;
 mod friction;
 mod history;
 mod input;
+mod joined;
 mod joints;
 mod known;
 mod noticed;
@@ -16,6 +17,7 @@ mod results;
 mod states;
 #[cfg(test)]
 mod tests;
+mod together;
 mod told;
 mod undetermined;
 
@@ -29,7 +31,7 @@ pub use crate::model::{options, Method, OptionInfo, OptionValue, PaperStep1, Pap
 pub use crate::progress::{Listener, LogLevel, LogListener, PhaseReport, Progress, Reply};
 pub use crate::qp::StepKind;
 pub use crate::ranks::{Link, Ranks, Traffic};
-pub use crate::serving::serve;
+pub use crate::serving::{serve, Rank};
 pub use crate::solve::{DualMethod, HostForm, Outcome, Report, RowState};
 pub use body_facts::{BodyFacts, Factors, Origin};
 pub use check::Candidate;

@@ -187,7 +187,7 @@ pub fn repeated(
 /// No load at all: a warning if nothing else moves the bodies.
 fn load(log: &Log, model: &HostModel, overlaps: bool) -> Result<()> {
     let is_zero = |values: &[f64]| values.iter().all(|value| *value == 0.0);
-    if model.bodies.iter().filter_map(|given| given.body.load.as_deref()).any(|load| !is_zero(load)) {
+    if model.bodies.iter().filter_map(|given| given.body.largest_load()).any(|most| most != 0.0) {
         return Ok(());
     }
     if overlaps || !is_zero(&model.equalities.rhs) || !is_zero(&model.friction.rows.rhs) {

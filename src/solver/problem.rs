@@ -15,11 +15,12 @@ use crate::platform::memory::Headroom;
 use crate::platform::stopwatch;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::ranks::{Ranks, Traffic};
-use crate::setup::{Prepared, Work};
-use crate::solve::{solve_islands, DualMethod, Report};
+use crate::setup::{Duals, Prepared, Work};
+use crate::solve::{solve_islands, Answer, DualMethod, Report};
 use crate::solver::decomposed::{answer_of_host, findings_of_host, of_host, same_bodies, solved};
 use crate::solver::findings::{redundant, Findings};
 use crate::solver::history::{Current, History};
+use crate::solver::joined::Joined;
 use crate::solver::noticed;
 use crate::solver::told::{begin, method, result};
 
@@ -35,10 +36,13 @@ pub struct Problem {
     pub(super) history: History,
     pub(super) findings: Option<Findings>,
     method: Option<&'static dyn DualMethod>,
-    host: Host,
+    pub(super) host: Host,
     phases: Phases,
     /// Processor seconds of the last setup or solve that the thread of the call has led; none without other ranks.
     leading: Option<f64>,
+    /// What this rank keeps of a problem to which several have given bodies, and, on rank 0, the problem of all.
+    pub(super) joined: Option<Box<Joined>>,
+    pub(super) all: Option<Box<Problem>>,
 }
 
 impl Problem {
@@ -59,6 +63,9 @@ impl Problem {
 
     /// Makes null spaces, factors and dual operators that are missing or out of date.
     pub fn setup(&mut self) -> Result<()> {
+        if self.joined.is_some() {
+            return self.set_up_together();
+        }
         // the memory limit includes a solve, which may follow
         self.watched("setup", f64::INFINITY, |problem, watch| {
             problem.decompose()?;
@@ -85,6 +92,9 @@ impl Problem {
     /// Solves (10)-(11) for the present loads and gaps. An incomplete answer is kept; the report says how good it is. If
     /// a group of bodies has no answer, the error says why, and the answers of the other groups are kept.
     pub fn solve(&mut self) -> Result<Report> {
+        if self.joined.is_some() {
+            return self.solve_together();
+        }
         self.watched("solve", self.model.settings.time_limit, |problem, watch| {
             begin(&watch.log, &problem.model, "solve")?;
             noticed::data(&watch.log, &problem.model)?;
@@ -118,6 +128,7 @@ impl Problem {
             answer.report.seconds_setup = (solving - started).as_secs_f64();
             answer.report.seconds_solve = solving.elapsed().as_secs_f64();
             answer.report.phases = prepared.phases(model, &watch.phases);
+            answer.without = bodies_without(&answer, host, model, prepared.done(model)?);
             history.keep(answer, prepared.made);
         }
         match (failure, self.report()) {
@@ -141,6 +152,9 @@ impl Problem {
 
     /// The answer of the last solve, if it is valid for the present data.
     pub(super) fn current(&self) -> Option<&Current> {
+        if self.joined.is_some() {
+            return self.history.current.as_ref().filter(|_| self.is_answered_together());
+        }
         let is_set_up = self.prepared.duals(&self.model).is_some();
         self.history.current.as_ref().filter(|current| is_set_up && current.made == self.prepared.made)
     }
@@ -256,6 +270,12 @@ impl Problem {
 
 /// Translation between the bodies of the host and their parts.
 impl Problem {
+    /// The bodies have other numbers than before.
+    pub(super) fn forget_bodies(&mut self) {
+        self.prepared.forget();
+        (self.decomposition, self.connected) = (None, Connected::default());
+    }
+
     /// The model that is solved: that of the host, or that of the pieces at the last call that used them.
     pub(super) fn solved(&self) -> &SolvedModel {
         solved(&self.model, &self.decomposition)
@@ -309,4 +329,11 @@ impl Problem {
         let what = "the body is cut into pieces and has no K+ of its own: option pieces = 1, set before its elements, leaves it whole";
         Err(Error::new(Kind::State, what).body(body))
     }
+}
+
+/// Which bodies of the host have no answer.
+fn bodies_without(answer: &Answer, host: &HostModel, model: &SolvedModel, duals: &Duals) -> Vec<bool> {
+    let parts = |body: usize| model.parts.as_ref().map_or(body..body + 1, |parts| parts.of(body));
+    let fails = |body: usize| parts(body).any(|part| answer.failed[duals.island_of[part]]);
+    (0..host.bodies.len()).map(fails).collect()
 }

@@ -4,7 +4,7 @@ use crate::certificate::{Certificate, FrictionState};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Proof, Result};
 use crate::platform::memory::zeros;
-use crate::solve::{Answer, Report, RowState};
+use crate::solve::{Answer, Pushes, Report, RowState};
 use crate::solver::findings::Findings;
 use crate::solver::joints::add_glue;
 use crate::solver::problem::Problem;
@@ -41,8 +41,7 @@ impl Problem {
     fn answer_on(&self, body: usize) -> Result<&Answer> {
         self.model.given(body)?;
         let answer = self.answer()?;
-        let island_of = &self.prepared.done(&self.model)?.island_of;
-        if self.parts_of(body).any(|part| answer.failed[island_of[part]]) {
+        if answer.without[body] {
             let what = "the group of bodies that this one belongs to has no answer";
             return Err(Error::new(Kind::State, what).body(body));
         }
@@ -78,6 +77,12 @@ impl Problem {
     pub fn reactions(&self, kind: Option<RowKind>) -> Result<Vec<f64>> {
         let answer = self.answer()?;
         let mut all = zeros(answer.u.len(), "a reaction")?;
+        if let Some(Pushes { of_rows, of_glue }) = answer.pushes.as_deref() {
+            let asked = RowKind::ALL.iter().filter(|of| kind.is_none_or(|kind| kind == **of));
+            let of_rows = asked.flat_map(|of| &of_rows[*of as usize]);
+            of_rows.chain(of_glue.iter().filter(|_| kind.is_none())).for_each(|(j, push)| all[*j] += push);
+            return Ok(all);
+        }
         for of in RowKind::ALL {
             if kind.is_none_or(|kind| kind == of) {
                 let (rows, multipliers) = (self.model.rows(of), answer.forces(of));

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use source::{line_of, occurrences, paths, test_modules, test_ranges, without_text, words, Named};
 
 /// What each layer may name; every layer may name itself.
-const ALLOWED: [(&str, &[&str]); 20] = [
+const ALLOWED: [(&str, &[&str]); 21] = [
     ("error", &[]),
     ("numbers", &[]),
     ("platform", &["error"]),
@@ -35,6 +35,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
     ("certificate", &["error", "numbers", "platform", "linalg", "body", "constraints"]),
     ("model", &["error", "numbers", "platform", "linalg", "mesh", "body", "constraints"]),
     ("decomposition", &["error", "numbers", "platform", "linalg", "mesh", "body", "constraints", "model"]),
+    ("gathering", &["error", "platform", "linalg", "body", "constraints", "model"]),
     ("progress", &["error", "numbers", "platform", "qp"]),
     (
         "setup",
@@ -84,6 +85,7 @@ const ALLOWED: [(&str, &[&str]); 20] = [
             "certificate",
             "model",
             "decomposition",
+            "gathering",
             "progress",
             "setup",
             "solve",

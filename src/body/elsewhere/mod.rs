@@ -2,10 +2,12 @@
 
 mod asking;
 mod body;
+mod given;
 mod joining;
 
 pub use asking::{ask, Asking, Boundary, Entries, Multiply, Name, NullSpace, Owed, Solve, ABOUT_BODIES};
 pub use body::{Away, BodyElsewhere, Enter, Entered, Facts, Give, GiveLoad, HostLoad};
+pub use given::{BodyThere, GivenThere, LoadThere, PartThere};
 pub use joining::{InIsland, Join, Joining};
 
 use std::sync::Arc;

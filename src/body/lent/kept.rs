@@ -74,6 +74,16 @@ impl Bodies {
         Ok(all)
     }
 
+    /// Keeps a body that the host has given on this rank.
+    pub fn keep_body(&self, name: u64, body: Body) {
+        self.store.keep(name, body);
+    }
+
+    /// Keeps its load.
+    pub fn keep_load(&self, name: u64, load: Option<Arc<[f64]>>) {
+        self.store.keep(name, RwLock::new(HostLoad(load)));
+    }
+
     /// What rank 0 no longer has goes.
     pub fn forget(&self, names: &[u64]) {
         self.store.forget(names);

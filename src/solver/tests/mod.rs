@@ -15,4 +15,5 @@ mod results;
 mod rows;
 mod sharing;
 mod states;
+mod together;
 mod watch;

@@ -1,0 +1,73 @@
+//! The order of bodies, rows and nodes: by the numbers of the host, so that no bit depends on the ranks that have given them; without
+//! numbers rank by rank.
+
+use std::cmp::Ordering;
+
+use crate::gathering::places::At;
+use crate::gathering::told::{Named, RowsTold, Told};
+
+/// All of what ranks have so many of, rank by rank.
+fn all(counts: impl Iterator<Item = usize>) -> Vec<At> {
+    counts.enumerate().flat_map(|(rank, count)| (0..count).map(move |number| At { rank, number })).collect()
+}
+
+/// Bodies by their least numbers, then by their largest.
+pub fn bodies(told: &[Told]) -> Vec<At> {
+    let mut bodies = all(told.iter().map(|of| of.bodies.len()));
+    bodies.sort_by_key(|at| {
+        let body = &told[at.rank].bodies[at.number];
+        body.numbers.map(|(least, most)| (least, most, body.order))
+    });
+    bodies
+}
+
+/// Rows of one kind by the numbers of their entries, then by values, right-hand sides and compliances.
+pub fn rows(told: &[Told], kind: usize, is_numbered: bool) -> Vec<At> {
+    let mut rows = all(told.iter().map(|of| of.rows[kind].len()));
+    if is_numbered {
+        rows.sort_by(|a, b| {
+            let of = |at: &At| (&told[at.rank].rows[kind], at.number);
+            compared(of(a), of(b))
+        });
+    }
+    rows
+}
+
+/// Nodes by their tangential rows, then by their contact rows; `normal`: the place of a contact row in the order.
+pub fn nodes(told: &[Told], is_numbered: bool, normal: impl Fn(At) -> usize) -> Vec<At> {
+    let mut nodes = all(told.iter().map(|of| of.nodes.len()));
+    if is_numbered {
+        let normal = |at: &At| {
+            let row = told[at.rank].nodes[at.number].normal;
+            row.map(|number| normal(At { rank: at.rank, number }))
+        };
+        nodes.sort_by(|a, b| {
+            let rows = |at: &At| told[at.rank].nodes[at.number].rows();
+            let own = |at: &At| &told[at.rank].rows[2];
+            let each = rows(a).zip(rows(b)).map(|(i, j)| compared((own(a), i), (own(b), j)));
+            let first = each.into_iter().find(|order| *order != Ordering::Equal);
+            first.unwrap_or_else(|| normal(a).cmp(&normal(b)))
+        });
+    }
+    nodes
+}
+
+fn compared((a, i): (&RowsTold, usize), (b, j): (&RowsTold, usize)) -> Ordering {
+    let [one, other] = [sorted(a.row(i)), sorted(b.row(j))];
+    let by_number = one.iter().map(|of| of.number).cmp(other.iter().map(|of| of.number));
+    let by_value = || {
+        let each = one.iter().zip(&other).map(|(a, b)| a.value.total_cmp(&b.value));
+        each.into_iter().find(|order| *order != Ordering::Equal).unwrap_or(Ordering::Equal)
+    };
+    let by_law = || {
+        let rhs = a.rhs[i].total_cmp(&b.rhs[j]);
+        rhs.then_with(|| a.compliance[i].total_cmp(&b.compliance[j]))
+    };
+    by_number.then_with(by_value).then_with(by_law)
+}
+
+fn sorted(row: &[Named]) -> Vec<Named> {
+    let mut row = row.to_vec();
+    row.sort_by_key(|of| of.number);
+    row
+}

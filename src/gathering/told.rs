@@ -1,0 +1,156 @@
+//! What a rank tells rank 0 of its part of the problem, without matrices.
+
+use crate::body::wire_struct;
+use crate::constraints::{FrictionNode, RowKind, RowSet};
+use crate::error::{Error, Kind, Result};
+use crate::model::{BodyRevisions, HostModel, Revisions, NAMED};
+
+/// The part of a rank.
+#[derive(Clone)]
+pub struct Told {
+    pub bodies: Vec<BodyTold>,
+    /// Contact, equality and tangential rows.
+    pub rows: Vec<RowsTold>,
+    pub dim: usize,
+    pub nodes: Vec<FrictionNode>,
+    /// Its bodies have numbers, or it has none and names unknowns by numbers.
+    pub is_numbered: bool,
+    pub glue: bool,
+    pub revisions: Revised,
+}
+
+/// Revisions of the part of a rank.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Revised {
+    pub of: Revisions,
+    pub numberings: u64,
+}
+
+#[derive(Clone)]
+pub struct BodyTold {
+    pub order: usize,
+    /// Its least and its largest number.
+    pub numbers: Option<(usize, usize)>,
+    pub revisions: BodyRevisions,
+}
+
+/// Rows of one kind.
+#[derive(Clone, Default)]
+pub struct RowsTold {
+    pub ptr: Vec<usize>,
+    pub entries: Vec<Named>,
+    pub rhs: Vec<f64>,
+    pub compliance: Vec<f64>,
+    /// Rows that lost all entries as rounding.
+    pub cancelled: Vec<usize>,
+}
+
+/// An entry of a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Named {
+    /// The number of its unknown; without numbers the unknown among those of the rank.
+    pub number: usize,
+    /// The body of this rank that was named; none: any body that has the number.
+    pub body: Option<(usize, usize)>,
+    pub value: f64,
+}
+
+/// What changes without a new setup.
+#[derive(Clone)]
+pub struct Values {
+    /// Right-hand sides of the three kinds of rows, length.
+    pub rhs: Vec<Vec<f64>>,
+    /// Coefficient and bound of every node.
+    pub laws: Vec<(f64, f64)>,
+    /// Start values, if the host has given them.
+    pub start: Vec<Option<Vec<f64>>>,
+}
+
+wire_struct!(Told { bodies, rows, dim, nodes, is_numbered, glue, revisions });
+wire_struct!(Revised { of, numberings });
+wire_struct!(BodyTold { order, numbers, revisions });
+wire_struct!(RowsTold { ptr, entries, rhs, compliance, cancelled });
+wire_struct!(Named { number, body, value });
+wire_struct!(Values { rhs, laws, start });
+wire_struct!(Revisions { bodies, rows, laws });
+wire_struct!(BodyRevisions { analysed, stiffness, motions });
+wire_struct!(FrictionNode { normal, first, count, coefficient, bound });
+
+impl Revised {
+    pub fn of(model: &HostModel) -> Self {
+        Self { of: model.revisions, numberings: model.numberings }
+    }
+}
+
+impl Told {
+    pub fn of(model: &HostModel) -> Result<Self> {
+        let numbered = model.bodies.iter().filter(|given| given.numbers.is_some()).count();
+        if numbered > 0 && numbered < model.bodies.len() {
+            let body = model.bodies.iter().position(|given| given.numbers.is_none()).unwrap_or(0);
+            let what =
+                "other bodies have numbers of the host, this body has none: give them by feti_body_numbering";
+            return Err(Error::new(Kind::State, what).body(body));
+        }
+        let body = |p: usize| {
+            let given = &model.bodies[p];
+            let numbers = given.numbers.as_deref().unwrap_or_default();
+            let ends = numbers.iter().min().zip(numbers.iter().max());
+            let numbers = ends.map(|(least, most)| (*least, *most));
+            BodyTold { order: given.body.order, numbers, revisions: given.revisions }
+        };
+        Ok(Self {
+            bodies: (0..model.bodies.len()).map(body).collect(),
+            rows: RowKind::ALL.iter().map(|kind| rows(model, model.rows(*kind))).collect(),
+            dim: model.friction.dim,
+            nodes: model.friction.nodes.clone(),
+            is_numbered: numbered > 0 || names(model),
+            glue: model.settings.glue == 1,
+            revisions: Revised::of(model),
+        })
+    }
+}
+
+/// Rows name unknowns by numbers.
+fn names(model: &HostModel) -> bool {
+    RowKind::ALL.iter().any(|kind| model.rows(*kind).matrix.col.iter().any(|j| *j >= NAMED))
+}
+
+fn rows(model: &HostModel, rows: &RowSet) -> RowsTold {
+    let named = |(j, value): (usize, f64)| match j.checked_sub(NAMED) {
+        Some(number) => Named { number, body: None, value },
+        None => {
+            let body = model.offsets[1..].partition_point(|end| *end <= j);
+            let dof = j - model.offsets[body];
+            let number = model.bodies[body].numbers.as_ref().map_or(j, |numbers| numbers[dof]);
+            Named { number, body: Some((body, dof)), value }
+        }
+    };
+    RowsTold {
+        ptr: rows.matrix.ptr.clone(),
+        entries: (0..rows.len()).flat_map(|i| rows.matrix.row(i)).map(named).collect(),
+        rhs: rows.rhs.clone(),
+        compliance: rows.compliance.to_vec(),
+        cancelled: rows.cancelled().to_vec(),
+    }
+}
+
+impl Values {
+    /// `start`: start values of the host.
+    pub fn of(model: &HostModel, start: Vec<Option<Vec<f64>>>) -> Self {
+        Self {
+            rhs: RowKind::ALL.iter().map(|kind| model.rows(*kind).rhs.clone()).collect(),
+            laws: model.friction.nodes.iter().map(|node| (node.coefficient, node.bound)).collect(),
+            start,
+        }
+    }
+}
+
+impl RowsTold {
+    pub fn len(&self) -> usize {
+        self.rhs.len()
+    }
+
+    pub fn row(&self, i: usize) -> &[Named] {
+        &self.entries[self.ptr[i]..self.ptr[i + 1]]
+    }
+}

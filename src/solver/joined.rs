@@ -1,0 +1,52 @@
+//! What a rank keeps of a problem to which several have given bodies and rows.
+
+use std::sync::Arc;
+
+use crate::decomposition::{Connected, Decomposition};
+use crate::gathering::{Order, Revised, Told};
+use crate::model::Revisions;
+use crate::ranks::Ranks;
+use crate::serving::Rank;
+
+/// The part of this rank in a problem of several.
+pub struct Joined {
+    pub ranks: Arc<Ranks>,
+    /// Number of the problem on the stream: equal on all ranks.
+    pub problem: u64,
+    pub role: Role,
+    /// The model of this rank to which its answer belongs.
+    pub answered: Option<Revisions>,
+}
+
+pub enum Role {
+    Leads(Box<Leader>),
+    Follows(Box<Follower>),
+}
+
+/// What rank 0 knows of the parts of all ranks.
+#[derive(Default)]
+pub struct Leader {
+    pub order: Order,
+    /// What each rank has told last; none: nothing is known.
+    pub told: Option<Vec<Told>>,
+    /// The revisions from which the problem of all ranks has been made.
+    pub made_from: Vec<Revised>,
+    /// Numbers that several ranks have, ascending, and these ranks.
+    pub shared: Vec<(usize, Vec<usize>)>,
+}
+
+/// What another rank keeps for its part.
+pub struct Follower {
+    pub rank: Rank,
+    pub connected: Connected,
+    /// The parts of its bodies.
+    pub parts: Option<Decomposition>,
+    /// Its numbers, ascending, and how many of them rank 0 has, during a call.
+    pub numbers: Option<(Vec<usize>, usize)>,
+}
+
+impl Follower {
+    pub fn new(rank: Rank) -> Self {
+        Self { rank, connected: Connected::default(), parts: None, numbers: None }
+    }
+}

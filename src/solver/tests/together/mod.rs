@@ -1,0 +1,130 @@
+//! Bodies and rows given on several ranks: the bits of one rank, whoever gives what.
+
+use std::sync::Arc;
+
+use crate::error::{Error, Kind};
+use crate::ranks::loopback::linked;
+use crate::ranks::Ranks;
+use crate::serving::Rank;
+use crate::solver::{Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
+
+/// Unknowns of a chain.
+const N: usize = 5;
+
+/// Runs `host` on every rank, each with its part of a problem; what the ranks return.
+fn on_ranks<T: Send>(size: usize, host: impl Fn(usize, &mut Problem) -> T + Sync) -> Vec<T> {
+    let (leader, others) = linked(size);
+    let run = |ranks: Arc<Ranks>| {
+        let (number, mut problem) = (ranks.rank, Problem::new());
+        let rank = (number > 0).then(|| Rank::new(Arc::clone(&ranks)));
+        problem.join(ranks, rank).unwrap();
+        host(number, &mut problem)
+    };
+    std::thread::scope(|scope| {
+        let others: Vec<_> = others.into_iter().map(|ranks| scope.spawn(|| run(ranks))).collect();
+        let first = run(leader);
+        let rest = others.into_iter().map(|thread| thread.join().unwrap());
+        std::iter::once(first).chain(rest).collect()
+    })
+}
+
+/// Chain p of springs; the first is held. Its unknowns have the numbers from 10 p.
+fn add_chain(problem: &mut Problem, p: usize) -> usize {
+    let (body, k) = (problem.add_body(N).unwrap(), 2.0 + (p % 3) as f64);
+    let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+    for i in 0..N {
+        if i > 0 {
+            col.push(i as i64 - 1);
+            val.push(-k);
+        }
+        let is_free_end = (i == 0 && p > 0) || i + 1 == N;
+        col.push(i as i64);
+        val.push(if is_free_end { k } else { 2.0 * k });
+        ptr.push(col.len());
+    }
+    let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+    problem.set_stiffness(body, input).unwrap();
+    let numbers: Vec<i64> = (0..N as i64).map(|i| 10 * p as i64 + i).collect();
+    problem.set_numbering(body, &numbers).unwrap();
+    let mut f = [0.0; N];
+    (f[N - 1], f[1]) = (-1.0 - p as f64 / 8.0, 0.25);
+    problem.set_load(body, &f).unwrap();
+    body
+}
+
+/// The begin of chain p rests on the end of the one before.
+fn add_row(problem: &mut Problem, p: usize) {
+    let numbers = [10 * p as i64 - 10 + N as i64 - 1, 10 * p as i64];
+    let rows = RowsInput { ptr: &[0, 2], body: None, dof: &numbers, val: &[1.0, -1.0], rhs: Some(&[0.1]) };
+    problem.add_rows(RowKind::Inequality, rows).unwrap();
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|v| v.to_bits()).collect()
+}
+
+/// u, lambda and what rows do to every chain, of a problem of `count` chains.
+fn serial(count: usize) -> (Vec<Vec<u64>>, Vec<u64>, Vec<Vec<u64>>) {
+    let mut problem = Problem::new();
+    for p in 0..count {
+        add_chain(&mut problem, p);
+    }
+    (1..count).for_each(|p| add_row(&mut problem, p));
+    assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+    let u = (0..count).map(|p| bits(problem.displacement(p).unwrap())).collect();
+    let lambda = bits(problem.multipliers(RowKind::Inequality).unwrap());
+    let reaction = |p: usize| {
+        let mut r = [0.0; N];
+        problem.reaction(None, p, &mut r).unwrap();
+        bits(&r)
+    };
+    (u, lambda, (0..count).map(reaction).collect())
+}
+
+#[test]
+fn chains_on_several_ranks_have_the_bits_of_one() {
+    const COUNT: usize = 6;
+    let (u, lambda, reactions) = serial(COUNT);
+    for size in [1, 2, 3, 4] {
+        // bodies and rows on ranks of their own choice, in falling order
+        let has_body = |rank: usize, p: usize| (3 * p + 1) % size == rank;
+        let has_row = |rank: usize, p: usize| (p * p) % size == rank;
+        on_ranks(size, |rank, problem| {
+            let bodies: Vec<usize> = (0..COUNT).rev().filter(|p| has_body(rank, *p)).collect();
+            for p in &bodies {
+                add_chain(problem, *p);
+            }
+            let rows: Vec<usize> = (1..COUNT).rev().filter(|p| has_row(rank, *p)).collect();
+            rows.iter().for_each(|p| add_row(problem, *p));
+            for _ in 0..2 {
+                assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved, "{size}");
+                for (body, p) in bodies.iter().enumerate() {
+                    assert_eq!(bits(problem.displacement(body).unwrap()), u[*p], "{size}: u of {p}");
+                    let mut r = [0.0; N];
+                    problem.reaction(None, body, &mut r).unwrap();
+                    assert_eq!(bits(&r), reactions[*p], "{size}: reaction of {p}");
+                }
+                let own: Vec<u64> = rows.iter().map(|p| lambda[p - 1]).collect();
+                assert_eq!(bits(problem.multipliers(RowKind::Inequality).unwrap()), own);
+            }
+        });
+    }
+}
+
+fn failed(problem: &mut Problem) -> Error {
+    problem.solve().unwrap_err()
+}
+
+#[test]
+fn an_error_names_its_rank_on_all_ranks() {
+    let errors = on_ranks(3, |rank, problem| {
+        add_chain(problem, rank);
+        add_row(problem, 1);
+        if rank == 2 {
+            problem.add_body(N).unwrap();
+        }
+        failed(problem)
+    });
+    let places: Vec<_> = errors.iter().map(|e| (e.kind, e.place.rank, e.place.body)).collect();
+    assert_eq!(places, [(Kind::State, Some(2), Some(1)); 3]);
+}

@@ -1,0 +1,138 @@
+//! A rank other than 0 in a call that all ranks make.
+
+use std::sync::Arc;
+
+use crate::body::Facts;
+use crate::decomposition::Decomposition;
+use crate::error::{Error, Kind, Result};
+use crate::gathering::{copies, Revised, Told, Values, SECTION};
+use crate::model::HostModel;
+use crate::platform::threads;
+use crate::ranks::{message, value, Incoming, Ranks, Wire, END};
+use crate::serving::answer;
+use crate::solver::joined::Follower;
+use crate::solver::problem::Problem;
+use crate::solver::together::check_part;
+use crate::solver::together::failure::Failure;
+use crate::solver::together::messages::{
+    Begin, Begun, Call, Finish, PartTold, PartsTold, Touch, Touched, BEGIN, FINISH, LOADS, NUMBERS, TOUCH,
+};
+
+impl Follower {
+    /// Answers until the call ends.
+    pub fn follow(
+        &mut self,
+        problem: &mut Problem,
+        ranks: &Arc<Ranks>,
+        number: u64,
+        call: Call,
+    ) -> Result<Finish> {
+        let threads = threads::count(problem.model.settings.threads, usize::MAX);
+        loop {
+            let incoming = ranks.next()?;
+            self.rank.bodies.forget(&incoming.dropped);
+            match incoming.question {
+                FINISH => {
+                    self.numbers = None;
+                    ranks.reply(&incoming, Ok(Vec::new()))?;
+                    return value(&incoming.message);
+                }
+                END => {
+                    ranks.reply(&incoming, Ok(Vec::new()))?;
+                    let what = format!("rank 0 has called feti_serve, this rank is in {}", call.name());
+                    return Err(Error::new(Kind::State, what));
+                }
+                question => {
+                    let answered = match question {
+                        BEGIN => self.begun(problem, &incoming, number, call),
+                        NUMBERS => self.section(&problem.model),
+                        TOUCH => {
+                            value(&incoming.message).and_then(|of| sent(self.touched(&problem.model, of)))
+                        }
+                        LOADS => {
+                            value(&incoming.message).and_then(|first| sent(self.loads(&problem.model, first)))
+                        }
+                        _ => answer(&self.rank.bodies, &incoming, threads),
+                    };
+                    ranks.reply(&incoming, answered)?;
+                }
+            }
+        }
+    }
+
+    fn begun(&self, problem: &mut Problem, incoming: &Incoming, number: u64, call: Call) -> Result<Vec<u8>> {
+        let Begin { known, .. } = value(&incoming.message)?;
+        let start = problem.history().given_start();
+        let model = &problem.model;
+        let is_new = known != Some(Revised::of(model));
+        let checked = check_part(model).and_then(|()| is_new.then(|| Told::of(model)).transpose());
+        let (told, refused) = match checked {
+            Ok(told) => (told, None),
+            Err(error) => (None, Some(Failure(error))),
+        };
+        let values = Some(Values::of(model, start));
+        Ok(message(&Some(Begun { problem: number, call, refused, told, values })))
+    }
+
+    /// The next numbers of this rank, ascending.
+    fn section(&mut self, model: &HostModel) -> Result<Vec<u8>> {
+        let all = || {
+            let mut all: Vec<usize> = model.unknowns.keys().copied().collect();
+            all.sort_unstable();
+            (all, 0)
+        };
+        let (numbers, done) = self.numbers.get_or_insert_with(all);
+        let end = (*done + SECTION).min(numbers.len());
+        let section = message(&numbers[*done..end].to_vec());
+        *done = end;
+        Ok(section)
+    }
+
+    /// Makes the parts, and keeps them for rank 0.
+    fn touched(&mut self, model: &HostModel, Touch { numbers, first }: Touch) -> Result<Touched> {
+        let copies = copies(model, numbers)?;
+        self.connected.follow(model)?;
+        let places = copies.1.iter().flatten().map(|(body, dof)| model.offsets[*body] + dof);
+        let parts = Decomposition::of_part(model, &self.connected, places)?;
+        let known = parts.model.parts.clone().ok_or_else(missing)?;
+        let mut bodies = Vec::with_capacity(model.bodies.len());
+        for body in 0..model.bodies.len() {
+            let mut told = Vec::new();
+            for part in known.of(body) {
+                let own = &parts.model.bodies[part].body;
+                let name = first + part as u64;
+                told.push(PartTold {
+                    order: own.order,
+                    dofs: (!known.parts[part].whole).then(|| known.dofs_of(part).into()),
+                    facts: Facts::of(own).ok_or_else(missing)?,
+                });
+                self.rank.bodies.keep_body(name, own.without_load());
+            }
+            let range = model.range(body);
+            let loose = known.loose.iter().filter(|j| range.contains(j)).map(|j| (j - range.start) as u32);
+            bodies.push(PartsTold { parts: told, loose: loose.collect() });
+        }
+        self.parts = Some(parts);
+        Ok(Touched { copies, bodies })
+    }
+
+    /// Keeps the loads of the parts for rank 0; the largest entry of each.
+    fn loads(&mut self, model: &HostModel, first: u64) -> Result<Vec<Option<f64>>> {
+        let Some(parts) = &mut self.parts else { return Ok(Vec::new()) };
+        parts.refresh_loads(model)?;
+        let mut largest = Vec::with_capacity(parts.model.bodies.len());
+        for (part, given) in parts.model.bodies.iter().enumerate() {
+            self.rank.bodies.keep_load(first + part as u64, given.body.load.as_deref().map(Arc::from));
+            largest.push(given.body.largest_load());
+        }
+        Ok(largest)
+    }
+}
+
+fn sent<T: Wire>(answer: Result<T>) -> Result<Vec<u8>> {
+    answer.map(|answer| message(&answer))
+}
+
+fn missing() -> Error {
+    Error::new(Kind::Internal, "a part of a body is missing")
+}

@@ -1,0 +1,219 @@
+//! The problem of all ranks, brought up to date at the begin of a call.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use crate::body::{BodyElsewhere, BodyThere, GivenThere, LoadThere, OtherForm, PartThere};
+use crate::constraints::RowKind;
+use crate::error::{Error, Kind, Result};
+use crate::gathering::{
+    copies, gathered, refresh, shared, At, GivenAt, Order, Places, Revised, Told, Values, SECTION,
+};
+use crate::model::Revisions;
+use crate::ranks::{value, Request, Wire};
+use crate::solver::joined::Leader;
+use crate::solver::together::check_part;
+use crate::solver::together::leader::Leading;
+use crate::solver::together::messages::{Begun, PartTold, PartsTold, Touch, Touched, LOADS, NUMBERS, TOUCH};
+
+/// Names of what a rank keeps, from the first on.
+const BLOCK: u64 = 1 << 40;
+
+impl Leading<'_> {
+    pub(super) fn gather(&mut self, begun: Vec<Begun>) -> Result<()> {
+        let (told, values) = self.told(begun)?;
+        let now: Vec<Revised> = told.iter().map(|of| of.revisions).collect();
+        if self.leader.made_from != now {
+            self.rebuild(&told, now)?;
+        }
+        refresh(&mut self.all.model, &self.leader.order, &values);
+        self.all.model.contents.settings.clone_from(&self.own.model.settings);
+        self.start(&values);
+        self.loads()?;
+        self.leader.told = Some(told);
+        Ok(())
+    }
+
+    /// The parts of all ranks, told now or before, and what changes without a new setup.
+    fn told(&mut self, begun: Vec<Begun>) -> Result<(Vec<Told>, Vec<Values>)> {
+        let start = self.own.history().given_start();
+        let model = &self.own.model;
+        let before = self.leader.told.take().unwrap_or_default();
+        check_part(model).map_err(|e| e.rank(0))?;
+        if let Some((k, failure)) = begun.iter().zip(1..).find_map(|(of, k)| Some((k, of.refused.clone()?))) {
+            return Err(failure.0.rank(k));
+        }
+        let mut before = before.into_iter().map(Some).collect::<Vec<_>>();
+        before.resize_with(self.ranks.size, || None);
+        let own = match before[0].take().filter(|of| of.revisions == Revised::of(model)) {
+            Some(own) => own,
+            None => Told::of(model).map_err(|e| e.rank(0))?,
+        };
+        let (mut told, mut values) = (vec![own], vec![Values::of(model, start)]);
+        for (of, before) in begun.into_iter().zip(&mut before[1..]) {
+            told.push(of.told.or_else(|| before.take()).ok_or_else(lost)?);
+            values.push(of.values.ok_or_else(lost)?);
+        }
+        Ok((told, values))
+    }
+
+    /// Start values of the host: those of ranks that have given none are 0.
+    fn start(&mut self, values: &[Values]) {
+        for kind in RowKind::ALL {
+            let k = kind as usize;
+            if values.iter().all(|of| of.start[k].is_none()) {
+                continue;
+            }
+            let own = |at: &At| values[at.rank].start[k].as_ref().map_or(0.0, |all| all[at.number]);
+            let all = self.leader.order.rows[k].iter().map(own).collect();
+            self.all.history().start[k] = Some(all);
+        }
+    }
+
+    /// Bodies and rows anew.
+    fn rebuild(&mut self, told: &[Told], now: Vec<Revised>) -> Result<()> {
+        let order = Order::of(told)?;
+        let before = &self.leader.order;
+        let differs = |of: fn(&Revised) -> u64| {
+            let old = &self.leader.made_from;
+            old.len() != now.len() || now.iter().zip(old).any(|(a, b)| of(a) != of(b))
+        };
+        let same_bodies = before.bodies == order.bodies && before.offsets == order.offsets;
+        let is_renumbered = differs(|of| of.numberings) || !same_bodies;
+        let shared = match (is_renumbered, order.is_numbered) {
+            (false, _) => self.leader.shared.clone(),
+            (true, false) => Vec::new(),
+            (true, true) => self.merge(told)?,
+        };
+        let (places, given) = self.places(told, &order, &shared)?;
+        let was = self.all.model.revisions;
+        let revisions = Revisions {
+            bodies: was.bodies + 1,
+            rows: was.rows + u64::from(differs(|of| of.of.rows) || is_renumbered),
+            laws: was.laws + u64::from(differs(|of| of.of.laws)),
+        };
+        self.all.model = gathered(told, &order, &places, given, revisions)?;
+        if !same_bodies {
+            self.all.forget_bodies();
+        }
+        let told = self.leader.told.take();
+        *self.leader = Leader { order, told, made_from: now, shared };
+        Ok(())
+    }
+
+    /// Where the unknowns of numbers are, and all bodies in their order.
+    fn places(
+        &self,
+        told: &[Told],
+        order: &Order,
+        shared: &[(usize, Vec<usize>)],
+    ) -> Result<(Places, Vec<GivenAt>)> {
+        let (named, number_of) = (Order::named(told), order.number_of_bodies());
+        let touched = |rank: usize| {
+            let shared = shared.iter().filter(|(_, of)| of.contains(&rank));
+            let mut all: Vec<usize> =
+                named.iter().copied().chain(shared.map(|(number, _)| *number)).collect();
+            all.sort_unstable();
+            all.dedup();
+            all
+        };
+        let mut places = Places::default();
+        let mut add = |rank: usize, of: &(Vec<usize>, Vec<Vec<(usize, usize)>>)| {
+            for (number, copies) in of.0.iter().zip(&of.1) {
+                for (body, dof) in copies {
+                    let body = number_of.get(&At { rank, number: *body }).copied().ok_or_else(lost)?;
+                    places.add(*number, order.offsets[body] + dof);
+                }
+            }
+            Ok(())
+        };
+        let model = &self.own.model;
+        add(0, &copies(model, touched(0))?)?;
+        let firsts: Vec<u64> = (0..self.ranks.size).map(|_| self.ranks.block(BLOCK)).collect();
+        let request = |rank: usize| {
+            let touch = Touch { numbers: touched(rank), first: firsts[rank] };
+            Request { rank, question: TOUCH, put: Box::new(move |to| touch.put(to)) }
+        };
+        let answers = self.ranks.ask((1..self.ranks.size).map(request).collect())?.answers()?;
+        let mut there = HashMap::new();
+        for (answer, rank) in answers.into_iter().zip(1..) {
+            let Touched { copies, bodies } = value(&answer.map_err(|e| e.rank(rank))?)?;
+            add(rank, &copies)?;
+            let mut names = firsts[rank]..;
+            for (number, PartsTold { parts, loose }) in bodies.into_iter().enumerate() {
+                let part = |PartTold { order, dofs, facts }| {
+                    let name = self.ranks.named(rank, names.next().unwrap_or_default());
+                    let of = Arc::new(BodyElsewhere { name, facts });
+                    PartThere { order, dofs, there: BodyThere { of, load: None } }
+                };
+                let parts = parts.into_iter().map(part).collect();
+                there.insert(At { rank, number }, GivenThere { parts, loose });
+            }
+        }
+        places.sort();
+        let given = |at: &At| match at.rank {
+            0 => Ok(GivenAt::Here(model.bodies[at.number].body.without_load())),
+            _ => there.remove(at).map(GivenAt::There).ok_or_else(lost),
+        };
+        let given = order.bodies.iter().map(given).collect::<Result<_>>()?;
+        Ok((places, given))
+    }
+
+    /// Numbers that several ranks have, which they may only if all have option glue.
+    fn merge(&self, told: &[Told]) -> Result<Vec<(usize, Vec<usize>)>> {
+        let mut numbers: Vec<usize> = self.own.model.unknowns.keys().copied().collect();
+        numbers.sort_unstable();
+        let mut own = numbers.chunks(SECTION);
+        let found = shared(self.ranks.size, |rank| {
+            if rank == 0 {
+                return Ok(own.next().unwrap_or_default().to_vec());
+            }
+            let request = Request { rank, question: NUMBERS, put: Box::new(|_| {}) };
+            let mut answers = self.ranks.ask(vec![request])?.answers()?;
+            value(&answers.pop().ok_or_else(lost)?.map_err(|e| e.rank(rank))?)
+        })?;
+        let without = told.iter().position(|of| !of.glue);
+        if let (Some((number, of)), Some(rank)) = (found.first(), without) {
+            let what = format!(
+                "an unknown of rank {} has this number, too; if you set option glue = 1 on all ranks first (rank {rank} has 0), \
+                 the two unknowns move together",
+                of[0]
+            );
+            return Err(Error::argument("number", what).rank(of[1]).index(*number as i64));
+        }
+        Ok(found)
+    }
+
+    /// The loads of all bodies.
+    fn loads(&mut self) -> Result<()> {
+        let firsts: Vec<u64> = (0..self.ranks.size).map(|_| self.ranks.block(BLOCK)).collect();
+        let request = |rank: usize| {
+            let first = firsts[rank];
+            Request { rank, question: LOADS, put: Box::new(move |to| first.put(to)) }
+        };
+        let answers = self.ranks.ask((1..self.ranks.size).map(request).collect())?.answers()?;
+        let mut loads = vec![Vec::new().into_iter()];
+        for (answer, rank) in answers.into_iter().zip(1..) {
+            let largest: Vec<Option<f64>> = value(&answer.map_err(|e| e.rank(rank))?)?;
+            let names = (firsts[rank]..).map(|number| Arc::new(self.ranks.named(rank, number)));
+            let all = largest.into_iter().zip(names).map(|(largest, name)| LoadThere { name, largest });
+            loads.push(all.collect::<Vec<_>>().into_iter());
+        }
+        let mut bodies: Vec<(At, usize)> = self.leader.order.bodies.iter().copied().zip(0..).collect();
+        bodies.sort_unstable();
+        for (At { rank, number }, body) in bodies {
+            let to = &mut self.all.model.contents.bodies[body].body;
+            if rank == 0 {
+                to.load.clone_from(&self.own.model.bodies[number].body.load);
+            }
+            if let Some(OtherForm::Given(there)) = to.other.as_deref_mut() {
+                there.parts.iter_mut().for_each(|part| part.there.load = loads[rank].next());
+            }
+        }
+        Ok(())
+    }
+}
+
+fn lost() -> Error {
+    Error::new(Kind::Internal, "a rank has not told all of its part")
+}

@@ -1,0 +1,208 @@
+//! The answer of the problem of all ranks, split: to each rank what belongs to its own bodies, rows and nodes, in its own numbers.
+
+use crate::certificate::{Certificate, Entry};
+use crate::constraints::RowKind;
+use crate::error::{Error, Place, Proof, Result};
+use crate::gathering::{At, Order};
+use crate::model::{HostModel, Joint};
+use crate::solve::{Answer, Pushes, Report};
+use crate::solver::findings::Findings;
+use crate::solver::together::share::{OwnAnswer, Share};
+
+/// The bodies, rows and nodes of one rank in the problem of all, in the order of their numbers there.
+struct Own {
+    bodies: Vec<usize>,
+    rows: [Vec<usize>; 3],
+    nodes: Vec<usize>,
+}
+
+impl Own {
+    fn of(order: &Order, rank: usize) -> Self {
+        let own = |all: &[At]| {
+            let mut own: Vec<(usize, usize)> = all
+                .iter()
+                .enumerate()
+                .filter(|(_, at)| at.rank == rank)
+                .map(|(k, at)| (at.number, k))
+                .collect();
+            own.sort_unstable();
+            own.into_iter().map(|(_, k)| k).collect::<Vec<usize>>()
+        };
+        Self {
+            bodies: own(&order.bodies),
+            rows: order.rows.each_ref().map(|rows| own(rows)),
+            nodes: own(&order.nodes),
+        }
+    }
+}
+
+fn picked<T: Clone>(all: &[T], own: &[usize]) -> Vec<T> {
+    own.iter().filter_map(|k| all.get(*k).cloned()).collect()
+}
+
+/// Translates what the problem of all ranks has found.
+pub struct Split<'a> {
+    order: &'a Order,
+    model: &'a HostModel,
+    /// Of every rank.
+    pushes: Vec<Pushes>,
+}
+
+impl<'a> Split<'a> {
+    pub fn new(order: &'a Order, model: &'a HostModel, answer: Option<&Answer>) -> Result<Self> {
+        let nothing = || Pushes { of_rows: vec![Vec::new(); RowKind::ALL.len()], of_glue: Vec::new() };
+        let ranks = order.bodies.iter().map(|at| at.rank + 1).max().unwrap_or(0);
+        let mut pushes: Vec<Pushes> = (0..ranks).map(|_| nothing()).collect();
+        let Some(answer) = answer else { return Ok(Self { order, model, pushes }) };
+        let starts = starts(order, model);
+        let own = |j: usize| {
+            let body = model.offsets[1..].partition_point(|end| *end <= j);
+            (order.bodies[body].rank, j - model.offsets[body] + starts[body])
+        };
+        for kind in RowKind::ALL {
+            let rows = model.rows(kind);
+            let forces = answer.forces(kind)[..rows.len()].iter().enumerate();
+            for (i, force) in forces.filter(|(_, force)| **force != 0.0) {
+                for (j, v) in rows.matrix.row(i) {
+                    let (rank, j) = own(j);
+                    pushes[rank].of_rows[kind as usize].push((j, -force * v));
+                }
+            }
+        }
+        for (Joint { ends: [before, after], .. }, mu) in
+            model.joints()?.into_iter().zip(&answer.mu[model.equalities.len()..])
+        {
+            for (j, push) in [(before, -mu), (after, *mu)] {
+                let (rank, j) = own(j);
+                pushes[rank].of_glue.push((j, push));
+            }
+        }
+        Ok(Self { order, model, pushes })
+    }
+
+    fn body(&self, body: usize) -> At {
+        self.order.bodies.get(body).copied().unwrap_or(At { rank: 0, number: body })
+    }
+
+    /// An error in the numbers of the rank that has its place.
+    pub fn error(&self, mut error: Error) -> Error {
+        self.place(&mut error.place);
+        error
+    }
+
+    fn place(&self, of: &mut Place) {
+        let at = match (of.body, of.row.zip(of.kind), of.node) {
+            (Some(body), ..) => Some(self.body(body)),
+            (_, Some((row, kind)), _) => self.order.rows.get(kind).and_then(|rows| rows.get(row)).copied(),
+            (_, _, Some(node)) => self.order.nodes.get(node).copied(),
+            _ => None,
+        };
+        let Some(At { rank, number }) = at.filter(|_| of.rank.is_none()) else { return };
+        of.rank = Some(rank);
+        match (of.body, of.row, of.node) {
+            (Some(_), ..) => of.body = Some(number),
+            (_, Some(_), _) => of.row = Some(number),
+            _ => of.node = Some(number),
+        }
+    }
+
+    fn report(&self, report: &Report) -> Report {
+        let mut told = report.clone();
+        let Order { bodies, rows, nodes, .. } = self.order;
+        for entry in [&mut told.certificate.equilibrium, &mut told.certificate.balance] {
+            named(entry, bodies);
+        }
+        let Certificate { penetration, negative_force, complementarity, .. } = &mut told.certificate;
+        [penetration, negative_force, complementarity].into_iter().for_each(|entry| named(entry, &rows[0]));
+        named(&mut told.certificate.equality, &rows[1]);
+        let Certificate { friction_cone, friction_work, friction_stick, .. } = &mut told.certificate;
+        [friction_cone, friction_work, friction_stick].into_iter().for_each(|entry| named(entry, nodes));
+        told
+    }
+
+    /// What a rank gets.
+    pub fn share(&self, rank: usize, answer: Option<&Answer>, findings: &Findings) -> Share {
+        let own = Own::of(self.order, rank);
+        let answer = answer.map(|answer| (self.report(&answer.report), self.own_answer(rank, &own, answer)));
+        Share { answer, findings: self.findings(rank, &own, findings) }
+    }
+
+    fn own_answer(&self, rank: usize, own: &Own, answer: &Answer) -> OwnAnswer {
+        let dim = self.model.friction.dim;
+        let u = own.bodies.iter().flat_map(|body| &answer.u[self.model.range(*body)]).copied().collect();
+        let forces = RowKind::ALL.iter().map(|kind| picked(answer.forces(*kind), &own.rows[*kind as usize]));
+        let of_node = |k: &usize| (dim * k..dim * (k + 1)).map(|i| answer.slips[i]);
+        OwnAnswer {
+            u,
+            forces: forces.collect(),
+            slips: own.nodes.iter().flat_map(of_node).collect(),
+            friction: picked(&answer.friction, &own.nodes),
+            alpha: picked(&answer.alpha, &own.bodies),
+            gaps: picked(&answer.gaps, &own.rows[0]),
+            states: picked(&answer.states, &own.rows[0]),
+            force_errors: picked(&answer.force_errors, &own.bodies),
+            without: picked(&answer.without, &own.bodies),
+            pushes: self.pushes.get(rank).cloned().unwrap_or_default(),
+        }
+    }
+
+    fn findings(&self, rank: usize, own: &Own, findings: &Findings) -> Findings {
+        let mut told = findings.clone();
+        self.place(&mut told.place);
+        let lists = [&mut told.untouched, &mut told.doubtful, &mut told.soft];
+        lists.into_iter().for_each(|list| *list = self.own_bodies(rank, list));
+        told.contact = own.rows[0].len();
+        let contact = self.order.rows[0].len();
+        let of_own = |(row, weight): (usize, f64)| {
+            let (kind, k) = if row < contact { (0, row) } else { (1, row - contact) };
+            let at = self.order.rows[kind].get(k).filter(|at| at.rank == rank)?;
+            Some((if kind == 0 { at.number } else { told.contact + at.number }, weight))
+        };
+        let listed = |all: &[(usize, f64)]| {
+            let mut own: Vec<_> = all.iter().copied().filter_map(of_own).collect();
+            own.sort_by_key(|(row, _)| *row);
+            own
+        };
+        let redundant = listed(&findings.redundant);
+        let proof = findings.proof.as_ref().map(|proof| match proof {
+            Proof::Motion { margin, v } => {
+                let v = own.bodies.iter().filter_map(|body| v.get(self.model.range(*body)));
+                Proof::Motion { margin: *margin, v: v.flatten().copied().collect() }
+            }
+            Proof::Rows { margin, weights, heaviest } => {
+                let heaviest = of_own((*heaviest, 1.0)).map_or(usize::MAX, |(row, _)| row);
+                Proof::Rows { margin: *margin, weights: listed(weights), heaviest }
+            }
+        });
+        Findings { redundant, proof, ..told }
+    }
+
+    fn own_bodies(&self, rank: usize, list: &[usize]) -> Vec<usize> {
+        let mut own: Vec<usize> = list
+            .iter()
+            .map(|body| self.body(*body))
+            .filter(|at| at.rank == rank)
+            .map(|at| at.number)
+            .collect();
+        own.sort_unstable();
+        own
+    }
+}
+
+fn named(entry: &mut Entry, all: &[At]) {
+    let Some(at) = entry.place.and_then(|place| all.get(place)) else { return };
+    (entry.rank, entry.place) = (at.rank, Some(at.number));
+}
+
+/// Of every body of all ranks its first unknown among those of its rank.
+fn starts(order: &Order, model: &HostModel) -> Vec<usize> {
+    let mut bodies: Vec<(At, usize)> = order.bodies.iter().copied().zip(0..).collect();
+    bodies.sort_unstable();
+    let (mut starts, mut end) = (vec![0; bodies.len()], (0, 0));
+    for (at, body) in bodies {
+        let start = if at.rank == end.0 { end.1 } else { 0 };
+        starts[body] = start;
+        end = (at.rank, start + model.range(body).len());
+    }
+    starts
+}

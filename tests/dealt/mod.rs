@@ -1,0 +1,362 @@
+//! Bodies, rows and nodes dealt out at random to ranks, which are threads here: the bits of one rank, and those of a problem that is given in
+//! the order of its numbers.
+
+use std::sync::Arc;
+
+use decks::random::Random;
+use decks::{battery, hard, varied, Deck, Rows};
+use feti_contact::ranks::loopback::linked;
+use feti_contact::solver::{FrictionInput, Modes, Problem, Rank, Ranks, RowKind, RowsInput};
+
+use crate::support::{asked, hand_over};
+use crate::{coulomb, soft};
+
+/// What a host says of the null space of a body.
+type Motions = fn(&mut Problem, usize, &decks::Body);
+
+/// Which bodies, contact rows, equality rows and nodes a rank gives, in its order.
+#[derive(Default, Clone)]
+struct Hand {
+    bodies: Vec<usize>,
+    rows: [Vec<usize>; 2],
+    nodes: Vec<usize>,
+}
+
+/// The bits of an answer, by the numbers of the deck; or why there is none.
+#[derive(Debug, PartialEq)]
+struct Bits {
+    told: String,
+    /// Of every body.
+    u: Vec<Vec<u64>>,
+    reactions: Vec<Vec<u64>>,
+    /// Of every row of each kind.
+    forces: [Vec<Vec<u64>>; 3],
+    gaps: Vec<Vec<u64>>,
+    states: Vec<String>,
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|v| v.to_bits()).collect()
+}
+
+/// Numbers of the unknowns: of every body the first.
+fn firsts(deck: &Deck) -> Vec<usize> {
+    let mut firsts = vec![0];
+    deck.bodies.iter().for_each(|body| firsts.push(firsts[firsts.len() - 1] + body.dofs()));
+    firsts
+}
+
+/// Rows as the given ones of a rank; by bodies of this rank if it has all and `by_bodies`, otherwise by numbers.
+fn add(
+    problem: &mut Problem,
+    (deck, hand): (&Deck, &Hand),
+    of: &Rows,
+    row: &[usize],
+    by_bodies: bool,
+    add: &mut dyn FnMut(&mut Problem, RowsInput),
+) {
+    let firsts = firsts(deck);
+    let (mut ptr, mut dof, mut val, mut body) = (vec![0], Vec::new(), Vec::new(), Vec::new());
+    let mut has_all = by_bodies;
+    for &i in row {
+        for (j, v) in of.matrix.row(i) {
+            let p = firsts[1..].partition_point(|end| *end <= j);
+            let own = hand.bodies.iter().position(|q| *q == p);
+            has_all &= own.is_some();
+            body.push((own.unwrap_or(0) as i64, (j - firsts[p]) as i64));
+            dof.push(j as i64);
+            val.push(v);
+        }
+        ptr.push(dof.len());
+    }
+    let (bodies, dofs): (Vec<i64>, Vec<i64>) = body.into_iter().unzip();
+    let rhs: Vec<f64> = row.iter().map(|i| of.rhs[*i]).collect();
+    let input = match has_all {
+        true => RowsInput { ptr: &ptr, body: Some(&bodies), dof: &dofs, val: &val, rhs: Some(&rhs) },
+        false => RowsInput { ptr: &ptr, body: None, dof: &dof, val: &val, rhs: Some(&rhs) },
+    };
+    add(problem, input);
+}
+
+/// Gives the part of a rank.
+fn give(problem: &mut Problem, deck: &Deck, hand: &Hand, motions: Motions) {
+    let firsts = firsts(deck);
+    for &p in &hand.bodies {
+        let body = problem.add_body(deck.bodies[p].dofs()).unwrap();
+        hand_over::set_body(problem, body, &deck.bodies[p]).unwrap();
+        motions(problem, body, &deck.bodies[p]);
+        let numbers: Vec<i64> = (firsts[p]..firsts[p + 1]).map(|number| number as i64).collect();
+        problem.set_numbering(body, &numbers).unwrap();
+    }
+    for (kind, of) in [(RowKind::Inequality, &deck.contact), (RowKind::Equality, &deck.equalities)] {
+        for &i in &hand.rows[kind as usize] {
+            add(problem, (deck, hand), of, &[i], i % 3 == 0, &mut |problem, rows| {
+                let first = problem.add_rows(kind, rows).unwrap();
+                problem.set_compliance(kind, first, &of.compliance[i..=i]).unwrap();
+            });
+        }
+    }
+    let friction = &deck.friction;
+    for &k in &hand.nodes {
+        let own = |row: usize| hand.rows[0].iter().position(|i| *i == row).unwrap() as i64;
+        let normal = [friction.normal[k].map_or(-1, own)];
+        let rows: Vec<usize> = (k * friction.dim..(k + 1) * friction.dim).collect();
+        let of = &friction.rows;
+        // as its contact row: the library compares the entries of both
+        let by_bodies = friction.normal[k].is_none_or(|row| row % 3 == 0);
+        add(problem, (deck, hand), of, &rows, by_bodies, &mut |problem, rows| {
+            let (coefficient, bound) = ([friction.coefficient[k]], [friction.bound[k]]);
+            let s_old: Vec<f64> = rows.rhs.unwrap().to_vec();
+            let rows = RowsInput { rhs: None, ..rows };
+            let (coefficient, bound) = (Some(&coefficient[..]), Some(&bound[..]));
+            let (dim, normal) = (friction.dim, &normal[..]);
+            let first =
+                problem.add_friction(FrictionInput { dim, normal, rows, coefficient, bound }).unwrap();
+            problem.set_friction_compliance(first, &[of.compliance[k * dim]]).unwrap();
+            problem.set_friction_reference(first, 1, dim, &s_old).unwrap();
+        });
+    }
+}
+
+/// Takes in what a rank has got.
+fn take(
+    problem: &mut Problem,
+    deck: &Deck,
+    hand: &Hand,
+    rank: usize,
+    ended: &feti_contact::error::Result<feti_contact::solver::Report>,
+    all: &mut Bits,
+) {
+    all.told = match ended {
+        Ok(report) => {
+            let certificate = &report.certificate;
+            let entries: Vec<_> = certificate.entries().iter().map(|of| (of.figure, of.ratio)).collect();
+            let figures = [report.unheld, report.gap_scale, report.energy];
+            let more = (report.floating_modes, report.active, report.undetermined, report.finished);
+            format!(
+                "{:?} {entries:?} {:?} {:?} {figures:?} {more:?}",
+                report.outcome, report.counts, report.sizes
+            )
+        }
+        Err(error) => {
+            let body = error.place.body.map(|body| match error.place.rank {
+                Some(of) if of == rank => hand.bodies[body],
+                _ => body,
+            });
+            let named = error.place.rank.is_none_or(|of| of == rank);
+            format!("{:?} {} {:?} {:?}", error.kind, error.what, error.place.value, body.filter(|_| named))
+        }
+    };
+    let Ok(u) = problem.displacements().map(<[f64]>::to_vec) else { return };
+    let mut at = 0;
+    for (body, p) in hand.bodies.iter().enumerate() {
+        let n = deck.bodies[*p].dofs();
+        all.u[*p] = bits(&u[at..at + n]);
+        at += n;
+        let mut r = vec![0.0; n];
+        if problem.reaction(None, body, &mut r).is_ok() {
+            all.reactions[*p] = bits(&r);
+        }
+    }
+    for kind in RowKind::ALL {
+        let forces = problem.multipliers(kind).unwrap().to_vec();
+        let dim = deck.friction.dim;
+        match kind {
+            RowKind::Tangential => {
+                let each = hand.nodes.iter().zip(forces.chunks(dim.max(1)));
+                each.for_each(|(k, own)| all.forces[2][*k] = bits(own));
+            }
+            kind => {
+                let each = hand.rows[kind as usize].iter().zip(&forces);
+                each.for_each(|(i, own)| all.forces[kind as usize][*i] = bits(&[*own]));
+            }
+        }
+    }
+    let gaps = problem.gaps().unwrap().to_vec();
+    hand.rows[0].iter().zip(&gaps).for_each(|(i, own)| all.gaps[*i] = bits(&[*own]));
+    let states = problem.active().unwrap().to_vec();
+    hand.rows[0].iter().zip(&states).for_each(|(i, own)| all.states[*i] = format!("{own:?}"));
+}
+
+fn nothing(deck: &Deck) -> Bits {
+    let [contact, equalities] =
+        [&deck.contact, &deck.equalities].map(|rows| vec![Vec::new(); rows.rhs.len()]);
+    let bodies = vec![Vec::new(); deck.bodies.len()];
+    Bits {
+        told: String::new(),
+        u: bodies.clone(),
+        reactions: bodies,
+        gaps: contact.clone(),
+        states: vec![String::new(); contact.len()],
+        forces: [contact, equalities, vec![Vec::new(); deck.friction.normal.len()]],
+    }
+}
+
+/// Every rank gives its hand; the answers of a first solve, and of a second one with loads once and a quarter as large.
+fn solved(deck: &Deck, hands: &[Hand], motions: Motions) -> Vec<Bits> {
+    let (leader, others) = linked(hands.len());
+    let run = |ranks: Arc<Ranks>| {
+        let (number, mut problem) = (ranks.rank, Problem::new());
+        let rank = (number > 0).then(|| Rank::new(Arc::clone(&ranks)));
+        problem.join(ranks, rank).unwrap();
+        give(&mut problem, deck, &hands[number], motions);
+        let mut ends = Vec::new();
+        for by in [1.0, 1.25] {
+            for (body, p) in hands[number].bodies.iter().enumerate() {
+                let load: Vec<f64> = deck.bodies[*p].load.iter().map(|f| by * f).collect();
+                problem.set_load(body, &load).unwrap();
+            }
+            let ended = problem.solve();
+            let mut own = nothing(deck);
+            take(&mut problem, deck, &hands[number], number, &ended, &mut own);
+            ends.push(own);
+            problem.set_str("start", "previous").unwrap();
+        }
+        ends
+    };
+    let mut all = std::thread::scope(|scope| {
+        let others: Vec<_> = others.into_iter().map(|ranks| scope.spawn(|| run(ranks))).collect();
+        let first = run(leader);
+        let rest = others.into_iter().map(|thread| thread.join().unwrap());
+        std::iter::once(first).chain(rest).collect::<Vec<_>>()
+    });
+    let mut merged = all.remove(0);
+    for own in all {
+        for (to, from) in merged.iter_mut().zip(own) {
+            to.merge(from);
+        }
+    }
+    merged
+}
+
+impl Bits {
+    /// Takes in what another rank has got.
+    fn merge(&mut self, other: Bits) {
+        fn fill<T: Default + PartialEq>(to: &mut [T], from: Vec<T>) {
+            to.iter_mut().zip(from).for_each(|(to, from)| {
+                if *to == T::default() {
+                    *to = from;
+                }
+            });
+        }
+        if other.told.len() > self.told.len() {
+            self.told = other.told;
+        }
+        fill(&mut self.u, other.u);
+        fill(&mut self.reactions, other.reactions);
+        self.forces.iter_mut().zip(other.forces).for_each(|(to, from)| fill(to, from));
+        fill(&mut self.gaps, other.gaps);
+        fill(&mut self.states, other.states);
+    }
+}
+
+/// All on one rank, in the order of the deck.
+fn whole(deck: &Deck) -> Hand {
+    let rows = [&deck.contact, &deck.equalities].map(|rows| (0..rows.rhs.len()).collect());
+    Hand { bodies: (0..deck.bodies.len()).collect(), rows, nodes: (0..deck.friction.normal.len()).collect() }
+}
+
+/// Dealt out at random to so many ranks, of which some may get nothing.
+fn dealt(deck: &Deck, size: usize, random: &mut Random) -> Vec<Hand> {
+    let mut hands = vec![Hand::default(); size];
+    let players = 1 + random.below(size);
+    let mut shuffled = |count: usize| {
+        let mut all: Vec<(u64, usize)> = (0..count).map(|k| (random.bits(), k)).collect();
+        all.sort_unstable();
+        all.into_iter().map(|(bits, k)| (size - 1 - (bits / 7) as usize % players, k)).collect::<Vec<_>>()
+    };
+    shuffled(deck.bodies.len()).into_iter().for_each(|(rank, p)| hands[rank].bodies.push(p));
+    let mut rank_of = vec![0; deck.contact.rhs.len()];
+    for (kind, rows) in [&deck.contact, &deck.equalities].into_iter().enumerate() {
+        for (rank, i) in shuffled(rows.rhs.len()) {
+            hands[rank].rows[kind].push(i);
+            if kind == 0 {
+                rank_of[i] = rank;
+            }
+        }
+    }
+    for (rank, k) in shuffled(deck.friction.normal.len()) {
+        let rank = deck.friction.normal[k].map_or(rank, |row| rank_of[row]);
+        hands[rank].nodes.push(k);
+    }
+    hands
+}
+
+/// Of rows that are given twice any may have the force.
+fn without_order_of_equal_rows(deck: &Deck, bits: &mut Bits) {
+    for (kind, rows) in [&deck.contact, &deck.equalities].into_iter().enumerate() {
+        let same = |i: usize, j: usize| {
+            rows.matrix.row(i).eq(rows.matrix.row(j))
+                && rows.rhs[i] == rows.rhs[j]
+                && rows.compliance[i] == rows.compliance[j]
+        };
+        for i in 0..rows.rhs.len() {
+            for j in (0..i).filter(|j| same(i, *j)) {
+                let of = |bits: &Bits, i: usize| {
+                    (bits.forces[kind][i].clone(), (kind == 0).then(|| bits.states[i].clone()))
+                };
+                if of(bits, i) < of(bits, j) {
+                    bits.forces[kind].swap(i, j);
+                    if kind == 0 {
+                        bits.states.swap(i, j);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Three deals of every problem, on up to 4 ranks.
+fn check(name: &str, seed: u64, deck: &Deck, motions: Motions) {
+    let mut one = solved(deck, &[whole(deck)], motions);
+    one.iter_mut().for_each(|bits| without_order_of_equal_rows(deck, bits));
+    let mut random = Random::new(seed ^ 0xdea1);
+    for deal in 0..3 {
+        let size = 1 + (seed as usize + deal) % 4;
+        let hands = dealt(deck, size, &mut random);
+        let mut got = solved(deck, &hands, motions);
+        got.iter_mut().for_each(|bits| without_order_of_equal_rows(deck, bits));
+        for (step, (got, one)) in got.iter().zip(&one).enumerate() {
+            assert_eq!(got, one, "{name} {seed}, deal {deal} on {size} ranks, solve {step}");
+        }
+    }
+}
+
+fn exact(problem: &mut Problem, body: usize, of: &decks::Body) {
+    let modes = of.modes();
+    problem.set_null_space(body, of.dofs(), modes.len(), &modes.concat(), of.dofs(), Modes::Exact).unwrap();
+}
+
+fn softly(problem: &mut Problem, body: usize, of: &decks::Body) {
+    let modes = of.modes();
+    problem.set_null_space(body, of.dofs(), modes.len(), &modes.concat(), of.dofs(), Modes::Soft).unwrap();
+}
+
+fn unsaid(_: &mut Problem, _: usize, _: &decks::Body) {}
+
+fn placed(problem: &mut Problem, body: usize, of: &decks::Body) {
+    let dimension = of.direction.iter().fold(1, |most, &axis| most.max(axis)) as usize;
+    problem.set_coordinates(body, dimension, &of.node, &of.direction, &of.coordinates.concat(), 3).unwrap();
+}
+
+/// Number of problems of each kind in the ordinary run.
+const PROBLEMS: u64 = 100;
+
+#[test]
+fn problems_dealt_out_to_ranks_have_the_bits_of_one_rank() {
+    for seed in asked::seeds(PROBLEMS) {
+        check("varied", seed, &varied::case(seed).deck, exact);
+        check("known outcome", seed, &battery::case(seed).deck, exact);
+        let case = hard::case(seed);
+        let motions = match case.given {
+            hard::Given::NullSpaces => exact,
+            hard::Given::Coordinates => placed,
+            _ => unsaid as Motions,
+        };
+        check("hard", seed, &case.deck, motions);
+        if seed % 4 == 0 {
+            check("friction", seed, &coulomb::drawn::case(seed, &coulomb::drawn::SIZES).deck, exact);
+        }
+        check("driven", seed, &soft::random::driven(seed), softly);
+    }
+}
