@@ -6,7 +6,7 @@ use crate::error::{Error, Kind, Result};
 use crate::model::{BodyRevisions, HostModel, Revisions, NAMED};
 
 /// The part of a rank.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Told {
     pub bodies: Vec<BodyTold>,
     /// Contact, equality and tangential rows.
@@ -83,6 +83,15 @@ impl Revised {
 }
 
 impl Told {
+    /// Of a rank that has no part.
+    pub fn nothing() -> Self {
+        Self {
+            rows: vec![RowsTold { ptr: vec![0], ..RowsTold::default() }; 3],
+            glue: true,
+            ..Self::default()
+        }
+    }
+
     pub fn of(model: &HostModel) -> Result<Self> {
         let numbered = model.bodies.iter().filter(|given| given.numbers.is_some()).count();
         if numbered > 0 && numbered < model.bodies.len() {
@@ -103,16 +112,17 @@ impl Told {
             rows: RowKind::ALL.iter().map(|kind| rows(model, model.rows(*kind))).collect(),
             dim: model.friction.dim,
             nodes: model.friction.nodes.clone(),
-            is_numbered: numbered > 0 || names(model),
+            is_numbered: is_numbered(model),
             glue: model.settings.glue == 1,
             revisions: Revised::of(model),
         })
     }
 }
 
-/// Rows name unknowns by numbers.
-fn names(model: &HostModel) -> bool {
-    RowKind::ALL.iter().any(|kind| model.rows(*kind).matrix.col.iter().any(|j| *j >= NAMED))
+/// Bodies have numbers, or rows name unknowns by numbers.
+pub fn is_numbered(model: &HostModel) -> bool {
+    !model.unknowns.is_empty()
+        || RowKind::ALL.iter().any(|kind| model.rows(*kind).matrix.col.iter().any(|j| *j >= NAMED))
 }
 
 fn rows(model: &HostModel, rows: &RowSet) -> RowsTold {
@@ -135,6 +145,11 @@ fn rows(model: &HostModel, rows: &RowSet) -> RowsTold {
 }
 
 impl Values {
+    /// Of a rank that has no part.
+    pub fn nothing() -> Self {
+        Self { rhs: vec![Vec::new(); 3], laws: Vec::new(), start: vec![None; 3] }
+    }
+
     /// `start`: start values of the host.
     pub fn of(model: &HostModel, start: Vec<Option<Vec<f64>>>) -> Self {
         Self {

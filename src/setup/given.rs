@@ -109,11 +109,11 @@ impl Prepared {
         let all = 0..equal.len();
         let of_class: HashMap<usize, usize> =
             all.clone().rev().filter_map(|p| Some((equal[p], rank(p)?))).collect();
-        let given: Vec<Option<usize>> =
-            all.clone().map(|p| rank(p).or_else(|| of_class.get(&equal[p]).copied())).collect();
-        if !lending.lends {
-            return Ok(given.into_iter().map(|rank| rank.unwrap_or(0)).collect());
-        }
+        let serves = |rank: &usize| lending.serve[*rank];
+        let given: Vec<Option<usize>> = all
+            .clone()
+            .map(|p| rank(p).or_else(|| of_class.get(&equal[p]).copied().filter(serves)))
+            .collect();
         // no row of the dual is known yet: one for each unknown that a row touches
         let rows: Vec<DistinctRows> =
             touched(model).into_iter().map(|rows| DistinctRows { rows, places: rows }).collect();
@@ -125,7 +125,7 @@ impl Prepared {
             Some(Cost { work: operators.sizes[p].factorisation() + assembly[p], bytes })
         };
         let costs: Vec<Option<Cost>> = all.clone().map(cost).collect();
-        let ranks = ranks_of(lending.size(), &given, &costs, lending.all);
+        let ranks = ranks_of(&lending.serve, &given, &costs, lending.all);
         let new = all.filter(|p| given[*p].is_none());
         lending.count(new.clone().count(), new.filter(|p| ranks[*p] > 0).count());
         self.bodies.iter_mut().zip(&ranks).for_each(|(own, rank)| own.rank = Some(*rank as u32));

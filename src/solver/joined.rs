@@ -33,6 +33,8 @@ pub struct Leader {
     pub made_from: Vec<Revised>,
     /// Numbers that several ranks have, ascending, and these ranks.
     pub shared: Vec<(usize, Vec<usize>)>,
+    /// Ranks that serve, and have no part of the problem.
+    pub serve: Vec<bool>,
 }
 
 /// What another rank keeps for its part.

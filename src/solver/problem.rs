@@ -63,8 +63,8 @@ impl Problem {
 
     /// Makes null spaces, factors and dual operators that are missing or out of date.
     pub fn setup(&mut self) -> Result<()> {
-        if self.joined.is_some() {
-            return self.set_up_together();
+        if let Some(()) = self.set_up_together()? {
+            return Ok(());
         }
         // the memory limit includes a solve, which may follow
         self.watched("setup", f64::INFINITY, |problem, watch| {
@@ -92,8 +92,8 @@ impl Problem {
     /// Solves (10)-(11) for the present loads and gaps. An incomplete answer is kept; the report says how good it is. If
     /// a group of bodies has no answer, the error says why, and the answers of the other groups are kept.
     pub fn solve(&mut self) -> Result<Report> {
-        if self.joined.is_some() {
-            return self.solve_together();
+        if let Some(report) = self.solve_together()? {
+            return Ok(report);
         }
         self.watched("solve", self.model.settings.time_limit, |problem, watch| {
             begin(&watch.log, &problem.model, "solve")?;
@@ -152,8 +152,8 @@ impl Problem {
 
     /// The answer of the last solve, if it is valid for the present data.
     pub(super) fn current(&self) -> Option<&Current> {
-        if self.joined.is_some() {
-            return self.history.current.as_ref().filter(|_| self.is_answered_together());
+        if self.is_answered_together() {
+            return self.history.current.as_ref();
         }
         let is_set_up = self.prepared.duals(&self.model).is_some();
         self.history.current.as_ref().filter(|current| is_set_up && current.made == self.prepared.made)

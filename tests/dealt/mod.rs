@@ -6,7 +6,7 @@ use std::sync::Arc;
 use decks::random::Random;
 use decks::{battery, hard, varied, Deck, Rows};
 use feti_contact::ranks::loopback::linked;
-use feti_contact::solver::{FrictionInput, Modes, Problem, Rank, Ranks, RowKind, RowsInput};
+use feti_contact::solver::{serve, FrictionInput, Modes, Problem, Rank, Ranks, RowKind, RowsInput};
 
 use crate::support::{asked, hand_over};
 use crate::{coulomb, soft};
@@ -20,6 +20,8 @@ struct Hand {
     bodies: Vec<usize>,
     rows: [Vec<usize>; 2],
     nodes: Vec<usize>,
+    /// It has nothing, and serves.
+    serves: bool,
 }
 
 /// The bits of an answer, by the numbers of the deck; or why there is none.
@@ -197,6 +199,11 @@ fn solved(deck: &Deck, hands: &[Hand], motions: Motions) -> Vec<Bits> {
     let (leader, others) = linked(hands.len());
     let run = |ranks: Arc<Ranks>| {
         let (number, mut problem) = (ranks.rank, Problem::new());
+        if hands[number].serves {
+            serve(&ranks, 1).unwrap();
+            return vec![nothing(deck), nothing(deck)];
+        }
+        let end = Arc::clone(&ranks);
         let rank = (number > 0).then(|| Rank::new(Arc::clone(&ranks)));
         problem.join(ranks, rank).unwrap();
         give(&mut problem, deck, &hands[number], motions);
@@ -212,6 +219,7 @@ fn solved(deck: &Deck, hands: &[Hand], motions: Motions) -> Vec<Bits> {
             ends.push(own);
             problem.set_str("start", "previous").unwrap();
         }
+        serve(&end, 1).unwrap();
         ends
     };
     let mut all = std::thread::scope(|scope| {
@@ -253,31 +261,39 @@ impl Bits {
 /// All on one rank, in the order of the deck.
 fn whole(deck: &Deck) -> Hand {
     let rows = [&deck.contact, &deck.equalities].map(|rows| (0..rows.rhs.len()).collect());
-    Hand { bodies: (0..deck.bodies.len()).collect(), rows, nodes: (0..deck.friction.normal.len()).collect() }
+    Hand {
+        bodies: (0..deck.bodies.len()).collect(),
+        rows,
+        nodes: (0..deck.friction.normal.len()).collect(),
+        serves: false,
+    }
 }
 
 /// Dealt out at random to so many ranks, of which some may get nothing.
 fn dealt(deck: &Deck, size: usize, random: &mut Random) -> Vec<Hand> {
     let mut hands = vec![Hand::default(); size];
     let players = 1 + random.below(size);
-    let mut shuffled = |count: usize| {
+    let shuffled = |count: usize, random: &mut Random| {
         let mut all: Vec<(u64, usize)> = (0..count).map(|k| (random.bits(), k)).collect();
         all.sort_unstable();
         all.into_iter().map(|(bits, k)| (size - 1 - (bits / 7) as usize % players, k)).collect::<Vec<_>>()
     };
-    shuffled(deck.bodies.len()).into_iter().for_each(|(rank, p)| hands[rank].bodies.push(p));
+    shuffled(deck.bodies.len(), random).into_iter().for_each(|(rank, p)| hands[rank].bodies.push(p));
     let mut rank_of = vec![0; deck.contact.rhs.len()];
     for (kind, rows) in [&deck.contact, &deck.equalities].into_iter().enumerate() {
-        for (rank, i) in shuffled(rows.rhs.len()) {
+        for (rank, i) in shuffled(rows.rhs.len(), random) {
             hands[rank].rows[kind].push(i);
             if kind == 0 {
                 rank_of[i] = rank;
             }
         }
     }
-    for (rank, k) in shuffled(deck.friction.normal.len()) {
+    for (rank, k) in shuffled(deck.friction.normal.len(), random) {
         let rank = deck.friction.normal[k].map_or(rank, |row| rank_of[row]);
         hands[rank].nodes.push(k);
+    }
+    for hand in &mut hands[1..] {
+        hand.serves = hand.bodies.is_empty() && hand.rows.iter().all(Vec::is_empty) && random.chance(0.5);
     }
     hands
 }

@@ -25,8 +25,8 @@ pub struct Lending {
     ranks: Arc<Ranks>,
     /// Bodies are dealt out in turn, whatever they cost: for tests.
     pub all: bool,
-    /// False: other ranks have only the bodies that the host has given there.
-    pub lends: bool,
+    /// Ranks that serve, and rank 0; the others have only the bodies that the host has given there.
+    pub serve: Vec<bool>,
     /// Bodies that have been given a rank, and those of them that were lent.
     dealt: [AtomicUsize; 2],
     /// Hears of these at the end.
@@ -43,7 +43,8 @@ impl Drop for Lending {
 
 impl Lending {
     pub fn new(ranks: Arc<Ranks>, all: bool) -> Self {
-        Self { ranks, all, lends: true, dealt: Default::default(), told: None }
+        let serve = vec![true; ranks.size];
+        Self { ranks, all, serve, dealt: Default::default(), told: None }
     }
 
     /// Number of ranks, with rank 0.

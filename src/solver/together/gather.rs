@@ -10,7 +10,7 @@ use crate::gathering::{
     copies, gathered, refresh, shared, At, GivenAt, Order, Places, Revised, Told, Values, SECTION,
 };
 use crate::model::Revisions;
-use crate::ranks::{value, Request, Wire};
+use crate::ranks::{value, Request};
 use crate::solver::joined::Leader;
 use crate::solver::together::check_part;
 use crate::solver::together::leader::Leading;
@@ -20,7 +20,7 @@ use crate::solver::together::messages::{Begun, PartTold, PartsTold, Touch, Touch
 const BLOCK: u64 = 1 << 40;
 
 impl Leading<'_> {
-    pub(super) fn gather(&mut self, begun: Vec<Begun>) -> Result<()> {
+    pub(super) fn gather(&mut self, begun: Vec<(usize, Begun)>) -> Result<()> {
         let (told, values) = self.told(begun)?;
         let now: Vec<Revised> = told.iter().map(|of| of.revisions).collect();
         if self.leader.made_from != now {
@@ -35,13 +35,14 @@ impl Leading<'_> {
     }
 
     /// The parts of all ranks, told now or before, and what changes without a new setup.
-    fn told(&mut self, begun: Vec<Begun>) -> Result<(Vec<Told>, Vec<Values>)> {
+    fn told(&mut self, begun: Vec<(usize, Begun)>) -> Result<(Vec<Told>, Vec<Values>)> {
         let start = self.own.history().given_start();
         let model = &self.own.model;
         let before = self.leader.told.take().unwrap_or_default();
         check_part(model).map_err(|e| e.rank(0))?;
-        if let Some((k, failure)) = begun.iter().zip(1..).find_map(|(of, k)| Some((k, of.refused.clone()?))) {
-            return Err(failure.0.rank(k));
+        if let Some((rank, failure)) = begun.iter().find_map(|(rank, of)| Some((*rank, of.refused.clone()?)))
+        {
+            return Err(failure.0.rank(rank));
         }
         let mut before = before.into_iter().map(Some).collect::<Vec<_>>();
         before.resize_with(self.ranks.size, || None);
@@ -49,10 +50,12 @@ impl Leading<'_> {
             Some(own) => own,
             None => Told::of(model).map_err(|e| e.rank(0))?,
         };
-        let (mut told, mut values) = (vec![own], vec![Values::of(model, start)]);
-        for (of, before) in begun.into_iter().zip(&mut before[1..]) {
-            told.push(of.told.or_else(|| before.take()).ok_or_else(lost)?);
-            values.push(of.values.ok_or_else(lost)?);
+        let nothing = |_| (Told::nothing(), Values::nothing());
+        let (mut told, mut values): (Vec<_>, Vec<_>) = (0..self.ranks.size).map(nothing).unzip();
+        (told[0], values[0]) = (own, Values::of(model, start));
+        for (rank, of) in begun {
+            told[rank] = of.told.or_else(|| before[rank].take()).ok_or_else(lost)?;
+            values[rank] = of.values.ok_or_else(lost)?;
         }
         Ok((told, values))
     }
@@ -97,7 +100,8 @@ impl Leading<'_> {
             self.all.forget_bodies();
         }
         let told = self.leader.told.take();
-        *self.leader = Leader { order, told, made_from: now, shared };
+        let serve = std::mem::take(&mut self.leader.serve);
+        *self.leader = Leader { order, told, made_from: now, shared, serve };
         Ok(())
     }
 
@@ -130,14 +134,10 @@ impl Leading<'_> {
         let model = &self.own.model;
         add(0, &copies(model, touched(0))?)?;
         let firsts: Vec<u64> = (0..self.ranks.size).map(|_| self.ranks.block(BLOCK)).collect();
-        let request = |rank: usize| {
-            let touch = Touch { numbers: touched(rank), first: firsts[rank] };
-            Request { rank, question: TOUCH, put: Box::new(move |to| touch.put(to)) }
-        };
-        let answers = self.ranks.ask((1..self.ranks.size).map(request).collect())?.answers()?;
+        let answers = self.ask(TOUCH, |rank| Touch { numbers: touched(rank), first: firsts[rank] })?;
         let mut there = HashMap::new();
-        for (answer, rank) in answers.into_iter().zip(1..) {
-            let Touched { copies, bodies } = value(&answer.map_err(|e| e.rank(rank))?)?;
+        for (rank, answer) in answers {
+            let Touched { copies, bodies } = value(&answer)?;
             add(rank, &copies)?;
             let mut names = firsts[rank]..;
             for (number, PartsTold { parts, loose }) in bodies.into_iter().enumerate() {
@@ -168,6 +168,9 @@ impl Leading<'_> {
             if rank == 0 {
                 return Ok(own.next().unwrap_or_default().to_vec());
             }
+            if !self.members.contains(&rank) {
+                return Ok(Vec::new());
+            }
             let request = Request { rank, question: NUMBERS, put: Box::new(|_| {}) };
             let mut answers = self.ranks.ask(vec![request])?.answers()?;
             value(&answers.pop().ok_or_else(lost)?.map_err(|e| e.rank(rank))?)
@@ -187,17 +190,12 @@ impl Leading<'_> {
     /// The loads of all bodies.
     fn loads(&mut self) -> Result<()> {
         let firsts: Vec<u64> = (0..self.ranks.size).map(|_| self.ranks.block(BLOCK)).collect();
-        let request = |rank: usize| {
-            let first = firsts[rank];
-            Request { rank, question: LOADS, put: Box::new(move |to| first.put(to)) }
-        };
-        let answers = self.ranks.ask((1..self.ranks.size).map(request).collect())?.answers()?;
-        let mut loads = vec![Vec::new().into_iter()];
-        for (answer, rank) in answers.into_iter().zip(1..) {
-            let largest: Vec<Option<f64>> = value(&answer.map_err(|e| e.rank(rank))?)?;
+        let mut loads: Vec<_> = (0..self.ranks.size).map(|_| Vec::new().into_iter()).collect();
+        for (rank, answer) in self.ask(LOADS, |rank| firsts[rank])? {
+            let largest: Vec<Option<f64>> = value(&answer)?;
             let names = (firsts[rank]..).map(|number| Arc::new(self.ranks.named(rank, number)));
             let all = largest.into_iter().zip(names).map(|(largest, name)| LoadThere { name, largest });
-            loads.push(all.collect::<Vec<_>>().into_iter());
+            loads[rank] = all.collect::<Vec<_>>().into_iter();
         }
         let mut bodies: Vec<(At, usize)> = self.leader.order.bodies.iter().copied().zip(0..).collect();
         bodies.sort_unstable();

@@ -72,6 +72,7 @@ pub struct PartTold {
 }
 
 /// The end of a call.
+#[derive(Default)]
 pub struct Finish {
     pub failure: Option<Failure>,
     pub share: Option<Share>,

@@ -34,15 +34,16 @@ impl Problem {
             None => Role::Leads(Box::<Leader>::default()),
             Some(rank) => Role::Follows(Box::new(Follower::new(rank))),
         };
-        self.all = matches!(role, Role::Leads(_)).then(|| {
-            let mut lending = Lending::new(Arc::clone(&ranks), false);
-            lending.lends = false;
+        let lending = || {
+            let may_lend = ranks.size > 1 && ranks.rank == 0;
+            may_lend.then(|| Lending::new(Arc::clone(&ranks), cfg!(feature = "loopback")))
+        };
+        (self.prepared.lending, self.model.has_others) = (lending(), true);
+        self.all = (ranks.rank == 0).then(|| {
             let mut all = Box::<Self>::default();
-            all.prepared.lending = Some(lending);
+            all.prepared.lending = lending();
             all
         });
-        self.model.has_others = true;
-        self.prepared.lending = None;
         self.joined = Some(Box::new(Joined { ranks, problem, role, answered: None }));
         Ok(())
     }
@@ -53,33 +54,39 @@ impl Problem {
         answered == Some(self.model.revisions)
     }
 
-    /// `feti_setup` on all ranks.
-    pub(super) fn set_up_together(&mut self) -> Result<()> {
-        self.all_together(Call::Setup).map(drop)
+    /// `feti_setup` on all ranks; none if rank 0 is alone with its problem.
+    pub(super) fn set_up_together(&mut self) -> Result<Option<()>> {
+        Ok(self.all_together(Call::Setup)?.map(drop))
     }
 
-    /// `feti_solve` on all ranks.
-    pub(super) fn solve_together(&mut self) -> Result<Report> {
+    /// `feti_solve` on all ranks; none if rank 0 is alone with its problem.
+    pub(super) fn solve_together(&mut self) -> Result<Option<Report>> {
         let missing = || Error::new(Kind::Internal, "a solve of all ranks left nothing");
-        self.all_together(Call::Solve)?.ok_or_else(missing)
+        self.all_together(Call::Solve)?.map(|report| report.ok_or_else(missing)).transpose()
     }
 
-    fn all_together(&mut self, call: Call) -> Result<Option<Report>> {
+    fn all_together(&mut self, call: Call) -> Result<Option<Option<Report>>> {
+        if self.joined.is_none() {
+            return Ok(None);
+        }
         let missing = || Error::new(Kind::Internal, "a problem of one rank was solved on several");
         let mut joined = self.joined.take().ok_or_else(missing)?;
         let Joined { ranks, problem, role, .. } = &mut *joined;
         let ended = match role {
             Role::Leads(leader) => {
                 let mut all = self.all.take().ok_or_else(missing)?;
-                let ended = Leading { ranks, leader, own: self, all: &mut all }.lead(*problem, call);
+                let mut leading = Leading { ranks, leader, own: self, all: &mut all, members: Vec::new() };
+                let ended = leading.lead(*problem, call);
                 self.all = Some(all);
                 ended
             }
-            Role::Follows(follower) => follower.follow(self, ranks, *problem, call),
+            Role::Follows(follower) => follower.follow(self, ranks, *problem, call).map(Some),
         };
-        let taken = ended.and_then(|end| self.take_end(end, call));
-        if let Ok(Some(_)) = &taken {
-            joined.answered = Some(self.model.revisions);
+        let taken = ended.and_then(|end| end.map(|end| self.take_end(end, call)).transpose());
+        match &taken {
+            Ok(Some(Some(_))) => joined.answered = Some(self.model.revisions),
+            Ok(None) => joined.answered = None,
+            _ => {}
         }
         self.joined = Some(joined);
         taken
