@@ -173,7 +173,7 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined(
         let (fastest, motion) =
             unsafe { (Output::optional(body, 1, "body")?, Output::optional(motion, 6, "motion")?) };
         let open = problem.open_motion(count(k, "k")?)?;
-        fastest.write_at(0, &[open.body as i64]);
+        fastest.write_at(0, &[known(open.body)]);
         motion.write_at(0, &open.motion.unwrap_or([f64::NAN; 6]));
         Ok(())
     })

@@ -7,7 +7,7 @@ mod told;
 
 pub use numbers::{shared, SECTION};
 pub use places::{copies, At, Copies, Places};
-pub use told::{is_numbered, Revised, Told, Values};
+pub use told::{Revised, Told, Values};
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -69,6 +69,19 @@ impl Order {
     /// The number here of every body of every rank.
     pub fn number_of_bodies(&self) -> HashMap<At, usize> {
         self.bodies.iter().copied().zip(0..).collect()
+    }
+
+    /// Of every body its first unknown among those of its rank.
+    pub fn starts(&self) -> Vec<usize> {
+        let mut bodies: Vec<(At, usize)> = self.bodies.iter().copied().zip(0..).collect();
+        bodies.sort_unstable();
+        let (mut starts, mut end) = (vec![0; bodies.len()], (0, 0));
+        for (at, body) in bodies {
+            let start = if at.rank == end.0 { end.1 } else { 0 };
+            starts[body] = start;
+            end = (at.rank, start + self.offsets[body + 1] - self.offsets[body]);
+        }
+        starts
     }
 
     /// Numbers that rows name without a body, ascending.

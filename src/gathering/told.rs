@@ -64,6 +64,8 @@ pub struct Values {
     pub laws: Vec<(f64, f64)>,
     /// Start values, if the host has given them.
     pub start: Vec<Option<Vec<f64>>>,
+    /// How often slips were committed.
+    pub commits: u64,
 }
 
 wire_struct!(Told { bodies, rows, dim, nodes, is_numbered, glue, revisions });
@@ -71,7 +73,7 @@ wire_struct!(Revised { of, numberings });
 wire_struct!(BodyTold { order, numbers, revisions });
 wire_struct!(RowsTold { ptr, entries, rhs, compliance, cancelled });
 wire_struct!(Named { number, body, value });
-wire_struct!(Values { rhs, laws, start });
+wire_struct!(Values { rhs, laws, start, commits });
 wire_struct!(Revisions { bodies, rows, laws });
 wire_struct!(BodyRevisions { analysed, stiffness, motions });
 wire_struct!(FrictionNode { normal, first, count, coefficient, bound });
@@ -126,18 +128,18 @@ pub fn is_numbered(model: &HostModel) -> bool {
 }
 
 fn rows(model: &HostModel, rows: &RowSet) -> RowsTold {
-    let named = |(j, value): (usize, f64)| match j.checked_sub(NAMED) {
+    let named = |i: usize, (j, value): (usize, f64)| match j.checked_sub(NAMED) {
         Some(number) => Named { number, body: None, value },
         None => {
             let body = model.offsets[1..].partition_point(|end| *end <= j);
             let dof = j - model.offsets[body];
             let number = model.bodies[body].numbers.as_ref().map_or(j, |numbers| numbers[dof]);
-            Named { number, body: Some((body, dof)), value }
+            Named { number, body: (!rows.is_named(i)).then_some((body, dof)), value }
         }
     };
     RowsTold {
         ptr: rows.matrix.ptr.clone(),
-        entries: (0..rows.len()).flat_map(|i| rows.matrix.row(i)).map(named).collect(),
+        entries: (0..rows.len()).flat_map(|i| rows.matrix.row(i).map(move |of| named(i, of))).collect(),
         rhs: rows.rhs.clone(),
         compliance: rows.compliance.to_vec(),
         cancelled: rows.cancelled().to_vec(),
@@ -147,15 +149,16 @@ fn rows(model: &HostModel, rows: &RowSet) -> RowsTold {
 impl Values {
     /// Of a rank that has no part.
     pub fn nothing() -> Self {
-        Self { rhs: vec![Vec::new(); 3], laws: Vec::new(), start: vec![None; 3] }
+        Self { rhs: vec![Vec::new(); 3], laws: Vec::new(), start: vec![None; 3], commits: 0 }
     }
 
     /// `start`: start values of the host.
-    pub fn of(model: &HostModel, start: Vec<Option<Vec<f64>>>) -> Self {
+    pub fn of(model: &HostModel, start: Vec<Option<Vec<f64>>>, commits: u64) -> Self {
         Self {
             rhs: RowKind::ALL.iter().map(|kind| model.rows(*kind).rhs.clone()).collect(),
             laws: model.friction.nodes.iter().map(|node| (node.coefficient, node.bound)).collect(),
             start,
+            commits,
         }
     }
 }

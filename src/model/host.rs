@@ -16,7 +16,7 @@ pub struct HostModel {
     pub unknowns: HashMap<usize, (usize, usize)>,
     /// The joints of bodies on several ranks, whose numbers are there.
     pub joined: Option<Vec<Joint>>,
-    /// Other ranks may have the unknowns of a number: rows that name it keep the number.
+    /// Other ranks may have the unknowns that rows name by numbers.
     pub has_others: bool,
     /// Increased if the numbers of a body change.
     pub numberings: u64,

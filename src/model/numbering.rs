@@ -1,6 +1,7 @@
 //! The host's own numbers of the unknowns, over all bodies; without them unknowns are numbered consecutively through the
 //! bodies.
 
+use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::model::host::HostModel;
@@ -9,7 +10,7 @@ use crate::platform::memory::{refusal, reserved};
 /// The smallest number that is too large for an index of an array.
 const TOO_LARGE: usize = isize::MAX as usize / size_of::<f64>();
 
-/// Of rows whose unknowns may be on other ranks, columns from here on are numbers of the host.
+/// Columns of rows from here on are numbers of unknowns that this rank does not have.
 pub const NAMED: usize = TOO_LARGE.next_power_of_two();
 
 impl HostModel {
@@ -110,6 +111,19 @@ impl HostModel {
         Err(Error::argument("n", what).value(n as f64).limit(end as f64))
     }
 
+    /// Refuses rows that name numbers of unknowns that this rank does not have.
+    pub fn check_named(&self) -> Result<()> {
+        for kind in RowKind::ALL.into_iter().filter(|_| self.has_others) {
+            let rows = &self.rows(kind).matrix;
+            if let Some(at) = rows.col.iter().position(|j| *j >= NAMED) {
+                let error = Error::argument("dof", format!("no unknown has the number {INDEX}"));
+                let row = rows.ptr.partition_point(|&start| start <= at) - 1;
+                return Err(error.row(row).kind(kind as usize).index((rows.col[at] - NAMED) as i64));
+            }
+        }
+        Ok(())
+    }
+
     /// Calls `work` for every unknown with its body, its dof and its position in an array over all unknowns; the position
     /// is none if an unknown of an earlier body has the same number.
     fn each_unknown(&self, mut work: impl FnMut(usize, usize, Option<usize>)) -> Result<()> {
@@ -156,29 +170,28 @@ impl HostModel {
         Ok(())
     }
 
-    /// Positions of the unknowns of rows, which begin at `ptr`, among the unknowns of all bodies one after the other;
+    /// Positions of the unknowns of rows, which begin at `ptr`, among the unknowns of all bodies one after the other; of those that only
+    /// another rank may have, their numbers from `NAMED` on;
     /// none if the host has not given numbers.
     pub fn places_of(&self, ptr: &[usize], numbers: &[i64]) -> Result<Option<Vec<i64>>> {
         if !self.is_numbered()? && !(self.has_others && self.bodies.is_empty()) {
             return Ok(None);
         }
         let mut places = reserved(numbers.len(), "constraint rows")?;
-        let named = |number: &usize| self.has_others && *number < TOO_LARGE;
+        let elsewhere = |number: usize| (self.has_others && number < TOO_LARGE).then_some(NAMED + number);
         for (entry, &number) in numbers.iter().enumerate() {
-            let number_of = usize::try_from(number).ok();
-            if let Some(number) = number_of.filter(named) {
-                places.push((NAMED + number) as i64);
-                continue;
-            }
-            let found = number_of.and_then(|number| self.unknowns.get(&number));
-            let Some((body, dof)) = found else {
+            let place = |number: usize| match self.unknowns.get(&number) {
+                Some((body, dof)) => Some(self.offsets[*body] + dof),
+                None => elsewhere(number),
+            };
+            let Some(place) = usize::try_from(number).ok().and_then(place) else {
                 let row = ptr.partition_point(|&start| start <= entry) - 1;
                 let error = Error::argument("dof", format!("no unknown has the number {INDEX}"))
                     .row(row)
                     .entry(entry);
                 return Err(error.index(number));
             };
-            places.push((self.offsets[*body] + dof) as i64);
+            places.push(place as i64);
         }
         Ok(Some(places))
     }

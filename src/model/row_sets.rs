@@ -1,5 +1,7 @@
 //! Contact rows and equality rows: added, changed, removed.
 
+use std::sync::Arc;
+
 use crate::constraints::{Friction, FrictionInput, RowKind, RowSet, RowsInput};
 use crate::error::{Error, Proof, Result};
 use crate::model::contents::SolvedModel;
@@ -16,10 +18,14 @@ impl HostModel {
             None => self.places_of(rows.ptr, rows.dof)?,
         };
         let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
+        let (all, end, is_named) = ([0, usize::MAX], self.sizes().dofs, self.has_others && places.is_some());
         let offsets = std::mem::take(&mut self.offsets);
-        let all = [0, usize::MAX];
-        let of = if self.has_others && places.is_some() { &all[..] } else { &offsets[..] };
-        let added = self.rows_mut(kind).add(kind, rows, of);
+        let set = self.rows_mut(kind);
+        let added = set.add(kind, rows, if is_named { &all } else { &offsets });
+        if let Some(first) = added.iter().copied().find(|_| is_named) {
+            set.name(first);
+            Arc::make_mut(&mut set.matrix).cols = end;
+        }
         self.offsets = offsets;
         let first = added?;
         self.revisions.rows += 1;
@@ -53,10 +59,14 @@ impl HostModel {
             None => self.places_of(input.rows.ptr, input.rows.dof)?,
         };
         let rows = RowsInput { dof: places.as_deref().unwrap_or(input.rows.dof), ..input.rows };
-        let (all, is_named) = ([0, usize::MAX], self.has_others && places.is_some());
+        let (all, end, is_named) = ([0, usize::MAX], self.sizes().dofs, self.has_others && places.is_some());
         let SolvedModel { friction, contact, offsets, .. } = &mut self.contents;
         let of = if is_named { &all[..] } else { &offsets[..] };
         let first = friction.add(FrictionInput { rows, ..input }, contact, of)?;
+        if is_named {
+            friction.rows.name(first * friction.dim);
+            Arc::make_mut(&mut friction.rows.matrix).cols = end;
+        }
         self.revisions.rows += 1;
         Ok(first)
     }

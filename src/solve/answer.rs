@@ -38,17 +38,19 @@ pub struct Answer {
     pub cleaned: Vec<Option<Box<Csr>>>,
     /// Bodies of the host in islands without an answer.
     pub without: Vec<bool>,
-    /// If other ranks have rows, too: what all rows do to the bodies.
-    pub pushes: Option<Box<Pushes>>,
+    /// If other ranks have bodies and rows, too.
+    pub of_others: Option<Box<OfOthers>>,
 }
 
-/// What rows do to unknowns: their forces times their entries, row after row.
+/// What one rank cannot tell from its own bodies and rows.
 #[derive(Clone, Default)]
-pub struct Pushes {
-    /// Of contact, equality and tangential rows.
+pub struct OfOthers {
+    /// What contact, equality and tangential rows do to unknowns, forces times entries, row after row.
     pub of_rows: Vec<Vec<(usize, f64)>>,
-    /// Of the glue of unknowns with one number.
+    /// The same of the glue of unknowns with one number.
     pub of_glue: Vec<(usize, f64)>,
+    /// `T u - C_t lambda_t` of its nodes, length, (dim, nodes).
+    pub reached: Vec<f64>,
 }
 
 /// How the islands ended, each with an answer or with the named reason why it has none; of the answers only what
@@ -86,7 +88,7 @@ impl<'a> Ends<'a> {
             failed: Vec::new(),
             cleaned: Vec::new(),
             without: Vec::new(),
-            pushes: None,
+            of_others: None,
         };
         let (islands, recovery) = (&prepared.done(model)?.islands[..], Duration::ZERO);
         Ok(Self { model, islands, answer, certificate: None, failure: None, recovery })

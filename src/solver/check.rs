@@ -6,6 +6,7 @@ use crate::error::{Error, Kind, Result};
 use crate::model::HostModel;
 use crate::solve::{named, Case};
 use crate::solver::decomposed::{of_host, solved};
+pub use crate::solver::joints::left_over;
 use crate::solver::joints::with_glue;
 use crate::solver::problem::Problem;
 
@@ -34,17 +35,7 @@ impl Problem {
     /// the last answer stays valid.
     pub fn check_with_friction(&mut self, answer: Candidate) -> Result<Certificate> {
         let Candidate { u, lambda, mu, tangential } = answer;
-        if self.prepared.duals(&self.model).is_none() {
-            self.setup()?;
-        }
-        self.decompose()?;
-        let Self { model: host, decomposition, prepared, .. } = self;
-        let model = solved(host, decomposition);
-        let told = |error| of_host(host, decomposition, error);
-        let lengths = prepared.lengths(model).map_err(told)?;
-        lengths.check_empty_rows().map_err(told)?;
-        prepared.refresh(&lengths)?;
-        let counts = host.sizes();
+        let counts = self.model.sizes();
         let lengths = [
             ("n", u, counts.dofs),
             ("rows", lambda, counts.rows),
@@ -58,7 +49,29 @@ impl Problem {
                 return Err(error.value(values.len() as f64).limit(expected as f64));
             }
         }
-        let mu = &with_glue(host, u, [lambda, mu, tangential])?[..];
+        match self.check_together(answer)? {
+            Some(certificate) => Ok(certificate),
+            None => self.check_alone_with(answer, left_over),
+        }
+    }
+
+    /// `left`: `f - K u`, asked for if unknowns share numbers.
+    pub(super) fn check_alone_with(
+        &mut self,
+        Candidate { u, lambda, mu, tangential }: Candidate,
+        left: impl FnOnce(&HostModel, &[f64]) -> Result<Vec<f64>>,
+    ) -> Result<Certificate> {
+        if self.prepared.duals(&self.model).is_none() {
+            self.setup()?;
+        }
+        self.decompose()?;
+        let Self { model: host, decomposition, prepared, .. } = self;
+        let model = solved(host, decomposition);
+        let told = |error| of_host(host, decomposition, error);
+        let lengths = prepared.lengths(model).map_err(told)?;
+        lengths.check_empty_rows().map_err(told)?;
+        prepared.refresh(&lengths)?;
+        let mu = &with_glue(host, || left(host, u), [lambda, mu, tangential])?[..];
         let copies = model.parts.as_ref().map(|parts| parts.spread(u)).transpose()?;
         let u = copies.as_deref().unwrap_or(u);
         let mut all: Option<Certificate> = None;

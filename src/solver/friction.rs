@@ -18,8 +18,12 @@ impl Problem {
             let what = "the last answer is not certified: its slips cannot be the start of the next step";
             return Err(Error::new(Kind::State, what));
         }
-        let reached = self.model.friction.reached(&answer.u, &answer.tangential)?;
+        let reached = match &answer.of_others {
+            Some(others) => others.reached.clone(),
+            None => self.model.friction.reached(&answer.u, &answer.tangential)?,
+        };
         let (nodes, dim) = (self.model.friction.len(), self.model.friction.dim);
+        self.history.commits += 1;
         self.model.set_friction_reference(0, nodes, dim, &reached)
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::constraints::{Friction, RowKind, RowSet};
+use crate::model::SolvedModel;
 use crate::solve::{Answer, Start};
 
 #[derive(Default)]
@@ -19,6 +20,8 @@ pub struct History {
     pub states: BTreeMap<usize, State>,
     /// Number of states saved so far.
     pub saved: usize,
+    /// How often slips were committed.
+    pub commits: u64,
 }
 
 /// An answer, the dual problems it belongs to, and results computed from it on request.
@@ -45,6 +48,16 @@ pub struct State {
     pub previous: Option<Arc<Answer>>,
     /// `previous` was the answer for exactly these data.
     pub answered: bool,
+}
+
+impl State {
+    /// Its rows are those of a model but for right-hand sides and laws.
+    pub fn is_of(&self, model: &SolvedModel) -> bool {
+        let [contact, equalities] = &self.rows;
+        model.contact.same_but_rhs(contact)
+            && model.equalities.same_but_rhs(equalities)
+            && model.friction.same_but_law(&model.contact, &self.friction, contact)
+    }
 }
 
 impl Current {

@@ -142,13 +142,6 @@ input! {
     /// Drops all nodes with friction; their contact rows remain.
     fn clear_friction(&mut self);
 
-    /// Takes over the content of a file. The problem must be empty; after an error it is still empty. Options are those
-    /// of the file, all others have their defaults; `index_base` is unchanged.
-    fn read_file(&mut self, path: &Path) -> Result<()>;
-
-    /// As `read_file`, from bytes in memory.
-    fn read_bytes(&mut self, bytes: &[u8]) -> Result<()>;
-
     reads:
 
     /// The value of a real option.
@@ -212,10 +205,30 @@ input! {
     /// Reserves memory for further rows: existing rows may be copied while their arrays grow.
     #[doc(hidden)]
     fn headroom_for_rows(&self, rows: usize, entries: usize) -> Result<Headroom>;
+}
+
+impl Problem {
+    /// Takes over the content of a file. The problem must be empty; after an error it is still empty. Options are those
+    /// of the file, all others have their defaults; `index_base` is unchanged.
+    pub fn read_file(&mut self, path: &Path) -> Result<()> {
+        self.check_file_together(false)?;
+        self.model.read_file(path)
+    }
+
+    /// As `read_file`, from bytes in memory.
+    pub fn read_bytes(&mut self, bytes: &[u8]) -> Result<()> {
+        self.model.read_bytes(bytes)
+    }
 
     /// Writes all input to a new file, which replaces an old one when it is complete.
-    fn write_file(&self, path: &Path) -> Result<()>;
+    pub fn write_file(&mut self, path: &Path) -> Result<()> {
+        self.check_file_together(true)?;
+        self.model.write_file(path)
+    }
 
     /// The bytes that `write_file` writes.
-    fn write_bytes(&self) -> Result<Vec<u8>>;
+    pub fn write_bytes(&self) -> Result<Vec<u8>> {
+        self.check_alone()?;
+        self.model.write_bytes()
+    }
 }

@@ -1,5 +1,6 @@
 //! What a rank keeps of a problem to which several have given bodies and rows.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::decomposition::{Connected, Decomposition};
@@ -7,6 +8,7 @@ use crate::gathering::{Order, Revised, Told};
 use crate::model::Revisions;
 use crate::ranks::Ranks;
 use crate::serving::Rank;
+use crate::solve::Answer;
 
 /// The part of this rank in a problem of several.
 pub struct Joined {
@@ -26,7 +28,7 @@ pub enum Role {
 /// What rank 0 knows of the parts of all ranks.
 #[derive(Default)]
 pub struct Leader {
-    pub order: Order,
+    pub order: Arc<Order>,
     /// What each rank has told last; none: nothing is known.
     pub told: Option<Vec<Told>>,
     /// The revisions from which the problem of all ranks has been made.
@@ -35,6 +37,15 @@ pub struct Leader {
     pub shared: Vec<(usize, Vec<usize>)>,
     /// Ranks that serve, and have no part of the problem.
     pub serve: Vec<bool>,
+    pub states: BTreeMap<usize, SavedByAll>,
+    /// The order to which a restored answer belongs.
+    pub expected: Option<Arc<Order>>,
+}
+
+/// What rank 0 keeps of a state of all ranks.
+pub struct SavedByAll {
+    pub order: Arc<Order>,
+    pub previous: Option<Arc<Answer>>,
 }
 
 /// What another rank keeps for its part.

@@ -8,21 +8,18 @@ use crate::platform::memory::{copied, filled, zeros};
 const WHAT: &str = "forces of glue";
 
 /// Multipliers of the host's equality rows, then of the joints, with the joint forces that bring the answer closest to
-/// equilibrium: the residual `f - K u - B'lambda` of an unknown is passed to the next unknown with its number and remains
+/// equilibrium, `left` being `f - K u`: the residual `f - K u - B'lambda` of an unknown is passed to the next unknown with its number and remains
 /// at the last one.
-pub fn with_glue(host: &HostModel, u: &[f64], forces: [&[f64]; 3]) -> Result<Vec<f64>> {
+pub fn with_glue(
+    host: &HostModel,
+    left: impl FnOnce() -> Result<Vec<f64>>,
+    forces: [&[f64]; 3],
+) -> Result<Vec<f64>> {
     let (mut all, joints) = (copied(forces[RowKind::Equality as usize], WHAT)?, host.joints()?);
     if joints.is_empty() {
         return Ok(all);
     }
-    let mut left = zeros(u.len(), WHAT)?;
-    for (body, given) in host.bodies.iter().enumerate() {
-        let range = host.range(body);
-        let own = &mut left[range.clone()];
-        given.body.k().map_or(Ok(()), |k| k.mul(&u[range], own))?;
-        own.iter_mut().for_each(|f| *f = -*f);
-        own.iter_mut().zip(given.body.load.iter().flatten()).for_each(|(left, f)| *left += f);
-    }
+    let mut left = left()?;
     for kind in RowKind::ALL {
         let (rows, forces) = (host.rows(kind), forces[kind as usize]);
         let mut carried = filled(rows.len(), 0.0, WHAT)?;
@@ -34,6 +31,19 @@ pub fn with_glue(host: &HostModel, u: &[f64], forces: [&[f64]; 3]) -> Result<Vec
         left[after] += left[before];
     }
     Ok(all)
+}
+
+/// `f - K u`, force.
+pub fn left_over(host: &HostModel, u: &[f64]) -> Result<Vec<f64>> {
+    let mut left = zeros(u.len(), WHAT)?;
+    for (body, given) in host.bodies.iter().enumerate() {
+        let range = host.range(body);
+        let own = &mut left[range.clone()];
+        given.body.k().map_or(Ok(()), |k| k.mul(&u[range], own))?;
+        own.iter_mut().for_each(|f| *f = -*f);
+        own.iter_mut().zip(given.body.load.iter().flatten()).for_each(|(left, f)| *left += f);
+    }
+    Ok(left)
 }
 
 /// Adds the forces of the joints on all bodies; `mu`: one multiplier per joint.

@@ -63,7 +63,7 @@ impl Problem {
 
     /// Makes null spaces, factors and dual operators that are missing or out of date.
     pub fn setup(&mut self) -> Result<()> {
-        if let Some(()) = self.set_up_together()? {
+        if self.set_up_together()? {
             return Ok(());
         }
         // the memory limit includes a solve, which may follow
@@ -210,12 +210,16 @@ impl Problem {
     /// Processor seconds of the last setup or solve in which the thread of the call did neither work of bodies here nor wait; none without
     /// other ranks.
     pub fn seconds_leading(&self) -> Option<f64> {
-        self.leading
+        match &self.all {
+            Some(all) if self.check_alone().is_err() => all.leading,
+            _ => self.leading,
+        }
     }
 
     /// What has been exchanged with other ranks, by all problems that share their stream of messages.
     pub fn traffic(&self) -> Traffic {
-        self.prepared.lending.as_ref().map(Lending::traffic).unwrap_or_default()
+        let joined = self.joined.as_ref().map(|joined| joined.ranks.traffic());
+        joined.or_else(|| self.prepared.lending.as_ref().map(Lending::traffic)).unwrap_or_default()
     }
 
     /// The function that receives the progress of setups and solves from now on.
@@ -251,12 +255,18 @@ impl Problem {
 
     /// Reserves memory for setup, solve and check while the result is kept; data out of date are dropped first.
     pub fn working_headroom(&mut self) -> Result<Headroom> {
+        if self.check_alone().is_err() {
+            return self.prepared.working_headroom(&self.model);
+        }
         self.follow();
         self.prepared.working_headroom(solved(&self.model, &self.decomposition))
     }
 
     /// As `working_headroom`, for a call that only needs the setup; none if the setup exists.
     pub fn setup_headroom(&mut self) -> Result<Option<Headroom>> {
+        if self.check_alone().is_err() {
+            return self.prepared.working_headroom(&self.model).map(Some);
+        }
         self.follow();
         self.prepared.setup_headroom(solved(&self.model, &self.decomposition))
     }
@@ -294,6 +304,7 @@ impl Problem {
     /// Updates parts, rows, loads and options to those of the host.
     pub(super) fn decompose(&mut self) -> Result<()> {
         self.model.check_complete()?;
+        self.model.check_named()?;
         self.connected.follow(&self.model)?;
         // of bodies on other ranks the model that is solved has no matrices
         let lends = self.prepared.lending.as_ref().is_some_and(|lending| !lending.is_over());

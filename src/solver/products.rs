@@ -17,6 +17,7 @@ impl Problem {
     fn set_up_parts(&mut self, body: usize) -> Result<Vec<(usize, &Inverse)>> {
         self.check_whole_body(body)?;
         self.setup()?;
+        self.check_alone()?;
         Ok(self.parts_of(body).zip(self.inverses(body)).collect())
     }
 
@@ -31,6 +32,7 @@ impl Problem {
         let order = self.model.order(body)?;
         if self.model.bodies[body].body.assembled().is_some() {
             self.setup()?;
+            self.check_alone()?;
             let basis = self.parts().and_then(|parts| null_space_of(&self.prepared, parts, body));
             let missing = || Error::new(Kind::Internal, "the setup left a body without null space");
             return basis.map(|basis| (basis.cols, Cow::from(&basis.data))).ok_or_else(missing);
@@ -101,6 +103,7 @@ impl Problem {
         self.check_rows(y.len())?;
         self.check_nothing_cut()?;
         self.setup()?;
+        self.check_alone()?;
         let compliance = self.model.contact.compliance.iter().chain(&*self.model.equalities.compliance);
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
         let contact = self.model.contact.len();
@@ -121,6 +124,7 @@ impl Problem {
         self.check_rows(d.len())?;
         self.check_nothing_cut()?;
         self.setup()?;
+        self.check_alone()?;
         let gaps = self.model.contact.rhs.iter().chain(&self.model.equalities.rhs);
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
         let contact = self.model.contact.len();

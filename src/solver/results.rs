@@ -4,7 +4,7 @@ use crate::certificate::{Certificate, FrictionState};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Proof, Result};
 use crate::platform::memory::zeros;
-use crate::solve::{Answer, Pushes, Report, RowState};
+use crate::solve::{Answer, OfOthers, Report, RowState};
 use crate::solver::findings::Findings;
 use crate::solver::joints::add_glue;
 use crate::solver::problem::Problem;
@@ -77,7 +77,7 @@ impl Problem {
     pub fn reactions(&self, kind: Option<RowKind>) -> Result<Vec<f64>> {
         let answer = self.answer()?;
         let mut all = zeros(answer.u.len(), "a reaction")?;
-        if let Some(Pushes { of_rows, of_glue }) = answer.pushes.as_deref() {
+        if let Some(OfOthers { of_rows, of_glue, .. }) = answer.of_others.as_deref() {
             let asked = RowKind::ALL.iter().filter(|of| kind.is_none_or(|kind| kind == **of));
             let of_rows = asked.flat_map(|of| &of_rows[*of as usize]);
             of_rows.chain(of_glue.iter().filter(|_| kind.is_none())).for_each(|(j, push)| all[*j] += push);

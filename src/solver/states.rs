@@ -25,6 +25,7 @@ impl Problem {
 
     /// Keeps loads, rows, friction, multipliers and active set under a number that is never used again.
     pub fn save_state(&mut self) -> Result<usize> {
+        self.save_together()?;
         let loads = self.model.bodies.iter().map(|given| copy_of(given.body.load.as_deref()));
         let state = State {
             bodies: self.model.revisions.bodies,
@@ -43,21 +44,35 @@ impl Problem {
     /// Restores loads, rows, friction and multipliers; the matrices keep their present values. The saved state is kept.
     /// The answer is also restored, unless matrices, rows or compliances differ or its setup no longer exists.
     pub fn restore_state(&mut self, number: usize) -> Result<()> {
-        let Self { model, prepared, history, .. } = self;
+        let fits = match self.restorable_together(number)? {
+            Some(fits) => fits,
+            None => self.restorable(number)? && self.prepared.duals(&self.model).is_some(),
+        };
+        self.restore(number, fits)?;
+        self.restored_together(fits);
+        Ok(())
+    }
+
+    /// Whether the answer of a state is that of its data, with the present matrices.
+    pub(super) fn restorable(&self, number: usize) -> Result<bool> {
+        let Self { model, history, .. } = self;
         let state = history.states.get(&number).ok_or_else(|| no_state(number))?;
         if state.loads.len() != model.bodies.len() {
             let what = "bodies were added since the state was saved: it no longer fits";
             return Err(Error::new(Kind::State, what));
         }
+        Ok(state.is_of(model) && state.answered && state.bodies == model.revisions.bodies)
+    }
+
+    /// `fits`: with its answer.
+    fn restore(&mut self, number: usize, fits: bool) -> Result<()> {
+        let Self { model, prepared, history, .. } = self;
+        let state = history.states.get(&number).ok_or_else(|| no_state(number))?;
         let loads = state.loads.iter().map(|load| copy_of(load.as_deref())).collect::<Result<Vec<_>>>()?;
         let [contact, equalities] = [state.rows[0].copied(WHAT)?, state.rows[1].copied(WHAT)?];
         let friction = state.friction.copied(WHAT)?;
-        let same = model.contact.same_but_rhs(&contact)
-            && model.equalities.same_but_rhs(&equalities)
-            && model.friction.same_but_law(&model.contact, &friction, &contact);
-        let is_set_up = prepared.duals(model).is_some();
+        let same = state.is_of(model);
         prepared.forget_pairs();
-        let fits = same && state.answered && state.bodies == model.revisions.bodies && is_set_up;
         let previous = state.previous.clone();
         model.revisions.laws += u64::from(!same);
         (model.contact, model.equalities, model.friction) = (contact, equalities, friction);
@@ -70,6 +85,7 @@ impl Problem {
     }
 
     pub fn drop_state(&mut self, number: usize) -> Result<()> {
+        self.forget_together(number);
         self.history.states.remove(&number).map(drop).ok_or_else(|| no_state(number))
     }
 }

@@ -18,8 +18,8 @@ use crate::solver::problem::Problem;
 pub struct OpenMotion {
     /// Over all unknowns, largest entry 1.
     pub v: Vec<f64>,
-    /// The body that moves fastest.
-    pub body: usize,
+    /// The body that moves fastest; none if another rank has it.
+    pub body: Option<usize>,
     /// v on this body, if it has coordinates: velocity of the origin (length) and rotation about the axes.
     pub motion: Option<[f64; 6]>,
 }
@@ -27,6 +27,9 @@ pub struct OpenMotion {
 impl Problem {
     /// Motion k of the motions that the last answer leaves undetermined.
     pub fn open_motion(&mut self, k: usize) -> Result<OpenMotion> {
+        if let Some(motion) = self.open_motion_together(k)? {
+            return Ok(motion);
+        }
         if self.current().is_none_or(|current| current.open_motions.is_none()) {
             let found = Some(self.find_open_motions()?);
             self.history.current.iter_mut().for_each(|current| current.open_motions.clone_from(&found));
@@ -48,7 +51,7 @@ impl Problem {
         let largest = v.get(fastest).copied().unwrap_or(1.0);
         v.iter_mut().for_each(|v| *v /= largest);
         let body = self.model.offsets[1..].partition_point(|end| *end <= fastest);
-        Ok(OpenMotion { motion: rigid_motion(&self.model, body, &v), body, v })
+        Ok(OpenMotion { motion: rigid_motion(&self.model, body, &v), body: Some(body), v })
     }
 
     /// Motion k on one body.
@@ -84,7 +87,10 @@ impl Problem {
 
     /// Equality rows that are combinations of others: they add no constraint, and the distribution of forces among them
     /// is undetermined.
-    pub fn dependent_equalities(&self) -> Result<Vec<usize>> {
+    pub fn dependent_equalities(&mut self) -> Result<Vec<usize>> {
+        if let Some(rows) = self.dependent_together()? {
+            return Ok(rows);
+        }
         let missing = || Error::new(Kind::State, "the problem has not been set up yet");
         let mut dependent = Vec::new();
         for ready in &self.prepared.duals(&self.model).ok_or_else(missing)?.islands {

@@ -14,7 +14,7 @@ fn problems_as_files() {
     let mut count = 0;
     let mut write = |problem: feti_contact::error::Result<feti_contact::solver::Problem>, name: String| {
         // some are refused as they are given
-        let Ok(problem) = problem else { return };
+        let Ok(mut problem) = problem else { return };
         problem.write_file(&Path::new(&folder).join(name)).unwrap();
         count += 1;
     };

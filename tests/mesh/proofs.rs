@@ -102,7 +102,7 @@ fn motions_left_open_are_those_of_the_bodies() {
         solved(&mut problem);
         let count = problem.report().unwrap().undetermined;
         let motions: Vec<_> = (0..count).map(|k| problem.open_motion(k).unwrap()).collect();
-        assert!(motions.iter().all(|motion| motion.body == 1 && motion.motion.is_some()));
+        assert!(motions.iter().all(|motion| motion.body == Some(1) && motion.motion.is_some()));
         count
     });
     assert_eq!(open, [3, 3]);

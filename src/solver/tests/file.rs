@@ -311,7 +311,7 @@ fn folder(name: &str) -> PathBuf {
 fn a_failed_write_leaves_the_old_file_and_nothing_else() {
     let folder = folder("write");
     let path = folder.join("problem.feti");
-    let problem = small();
+    let mut problem = small();
     problem.write_file(&path).unwrap();
     assert_eq!(fs::read(&path).unwrap(), problem.write_bytes().unwrap());
     Problem::new().write_file(&path).unwrap();
@@ -339,7 +339,7 @@ fn a_failed_write_leaves_the_old_file_and_nothing_else() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_device_or_a_link_leaves_what_there_was() {
-    let problem = small();
+    let mut problem = small();
     assert!(
         problem.write_file("/dev/null".as_ref()).is_err() && !fs::metadata("/dev/null").unwrap().is_file()
     );

@@ -15,7 +15,8 @@ use crate::solver::problem::Problem;
 use crate::solver::together::check_part;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::messages::{
-    Begin, Begun, Call, Finish, PartTold, PartsTold, Touch, Touched, BEGIN, FINISH, LOADS, NUMBERS, TOUCH,
+    Begin, Begun, Call, Called, Finish, Given, PartTold, PartsTold, Touch, Touched, BEGIN, FINISH, LOADS,
+    NUMBERS, TOUCH,
 };
 
 impl Follower {
@@ -25,7 +26,7 @@ impl Follower {
         problem: &mut Problem,
         ranks: &Arc<Ranks>,
         number: u64,
-        call: Call,
+        (called, mut given): (Called, Option<Given>),
     ) -> Result<Finish> {
         let threads = threads::count(problem.model.settings.threads, usize::MAX);
         loop {
@@ -39,12 +40,13 @@ impl Follower {
                 }
                 END => {
                     ranks.reply(&incoming, Ok(Vec::new()))?;
-                    let what = format!("rank 0 has called feti_serve, this rank is in {}", call.name());
+                    let what =
+                        format!("rank 0 has called feti_serve, this rank is in {}", called.call.name());
                     return Err(Error::new(Kind::State, what));
                 }
                 question => {
                     let answered = match question {
-                        BEGIN => self.begun(problem, &incoming, number, call),
+                        BEGIN => begun(problem, &incoming, number, (called, given.take())),
                         NUMBERS => self.section(&problem.model),
                         TOUCH => {
                             value(&incoming.message).and_then(|of| sent(self.touched(&problem.model, of)))
@@ -58,20 +60,6 @@ impl Follower {
                 }
             }
         }
-    }
-
-    fn begun(&self, problem: &mut Problem, incoming: &Incoming, number: u64, call: Call) -> Result<Vec<u8>> {
-        let Begin { known, .. } = value(&incoming.message)?;
-        let start = problem.history().given_start();
-        let model = &problem.model;
-        let is_new = known != Some(Revised::of(model));
-        let checked = check_part(model).and_then(|()| is_new.then(|| Told::of(model)).transpose());
-        let (told, refused) = match checked {
-            Ok(told) => (told, None),
-            Err(error) => (None, Some(Failure(error))),
-        };
-        let values = Some(Values::of(model, start));
-        Ok(message(&Some(Begun { problem: number, call, refused, told, values })))
     }
 
     /// The next numbers of this rank, ascending.
@@ -127,6 +115,34 @@ impl Follower {
         }
         Ok(largest)
     }
+}
+
+/// What this rank does, and what rank 0 does not know of its part.
+fn begun(
+    problem: &mut Problem,
+    incoming: &Incoming,
+    number: u64,
+    (called, answer): (Called, Option<Given>),
+) -> Result<Vec<u8>> {
+    let Begin { known, .. } = value(&incoming.message)?;
+    let mut begun =
+        Begun { problem: number, called, refused: None, told: None, values: None, answer, fits: false };
+    let is_new = known != Some(Revised::of(&problem.model));
+    let told = match called.call {
+        Call::RestoreState => problem.restorable(called.number as usize).map(|fits| begun.fits = fits),
+        Call::Setup | Call::Solve | Call::Check => check_part(&problem.model),
+        Call::SaveState | Call::OpenMotion | Call::Dependent | Call::Write | Call::Read => Ok(()),
+    };
+    let told = told.and_then(|()| is_new.then(|| Told::of(&problem.model)).transpose());
+    match told {
+        Ok(told) => begun.told = told,
+        Err(error) => begun.refused = Some(Failure(error)),
+    }
+    if matches!(called.call, Call::Setup | Call::Solve | Call::Check) {
+        let start = problem.history().given_start();
+        begun.values = Some(Values::of(&problem.model, start, problem.history.commits));
+    }
+    Ok(message(&Some(begun)))
 }
 
 fn sent<T: Wire>(answer: Result<T>) -> Result<Vec<u8>> {

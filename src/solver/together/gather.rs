@@ -11,7 +11,6 @@ use crate::gathering::{
 };
 use crate::model::Revisions;
 use crate::ranks::{value, Request};
-use crate::solver::joined::Leader;
 use crate::solver::together::check_part;
 use crate::solver::together::leader::Leading;
 use crate::solver::together::messages::{Begun, PartTold, PartsTold, Touch, Touched, LOADS, NUMBERS, TOUCH};
@@ -52,11 +51,12 @@ impl Leading<'_> {
         };
         let nothing = |_| (Told::nothing(), Values::nothing());
         let (mut told, mut values): (Vec<_>, Vec<_>) = (0..self.ranks.size).map(nothing).unzip();
-        (told[0], values[0]) = (own, Values::of(model, start));
+        (told[0], values[0]) = (own, Values::of(model, start, self.own.history.commits));
         for (rank, of) in begun {
             told[rank] = of.told.or_else(|| before[rank].take()).ok_or_else(lost)?;
             values[rank] = of.values.ok_or_else(lost)?;
         }
+        check_commits(&values)?;
         Ok((told, values))
     }
 
@@ -99,9 +99,10 @@ impl Leading<'_> {
         if !same_bodies {
             self.all.forget_bodies();
         }
-        let told = self.leader.told.take();
-        let serve = std::mem::take(&mut self.leader.serve);
-        *self.leader = Leader { order, told, made_from: now, shared, serve };
+        if self.leader.expected.take().is_some_and(|expected| expected.rows != order.rows) {
+            self.all.history().previous = None;
+        }
+        (self.leader.order, self.leader.made_from, self.leader.shared) = (Arc::new(order), now, shared);
         Ok(())
     }
 
@@ -210,6 +211,15 @@ impl Leading<'_> {
         }
         Ok(())
     }
+}
+
+/// Slips are committed by all ranks that have nodes with friction, or by none.
+fn check_commits(values: &[Values]) -> Result<()> {
+    let mut with_nodes = values.iter().enumerate().filter(|(_, of)| !of.laws.is_empty());
+    let Some((first, of)) = with_nodes.next() else { return Ok(()) };
+    let Some((other, _)) = with_nodes.find(|(_, other)| other.commits != of.commits) else { return Ok(()) };
+    let what = format!("rank {first} and rank {other} have called feti_friction_commit not equally often");
+    Err(Error::new(Kind::State, what))
 }
 
 fn lost() -> Error {

@@ -1,14 +1,17 @@
 //! Rank 0 in a call that all ranks make.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
-use crate::gathering::is_numbered;
+use crate::gathering::{At, Order, Revised};
 use crate::ranks::{value, Ranks, Request, Wire};
+use crate::solver::check::Candidate;
 use crate::solver::joined::Leader;
 use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
-use crate::solver::together::messages::{Begin, Begun, Call, Finish, BEGIN, FINISH};
+use crate::solver::together::for_one_rank;
+use crate::solver::together::messages::{Begin, Begun, Call, Called, Finish, Given, BEGIN, FINISH};
 use crate::solver::together::split::Split;
 
 /// A call of all ranks, led by rank 0.
@@ -24,18 +27,20 @@ pub(super) struct Leading<'a> {
 }
 
 impl Leading<'_> {
-    /// Leads the call; the other ranks hear of its end whatever happens. None if no other rank has a part, and no order of numbers is asked
-    /// for: the problem of rank 0 is that of all.
-    pub fn lead(&mut self, number: u64, call: Call) -> Result<Option<Finish>> {
-        let begun = self.begin(number, call)?;
+    /// Leads the call; the other ranks hear of its end whatever happens. None if no other rank has a part: the problem of rank 0 is that
+    /// of all.
+    pub fn lead(&mut self, problem: u64, called: Called, given: Option<Given>) -> Result<Option<Finish>> {
+        let begun = self.begin(problem, called)?;
         self.members = begun.iter().map(|(rank, _)| *rank).collect();
-        if begun.is_empty() && !is_numbered(&self.own.model) {
+        if begun.is_empty() {
             return Ok(None);
         }
-        let ended = together(number, call, &begun).and_then(|()| self.led(call, begun));
+        let ended = together(problem, called, &begun).and_then(|()| self.led(called, begun, given));
         let failed = |error: Error| {
             let failure = Some(Failure(error));
-            (0..=self.members.len()).map(|_| Finish { failure: failure.clone(), share: None }).collect()
+            (0..=self.members.len())
+                .map(|_| Finish { failure: failure.clone(), ..Finish::default() })
+                .collect()
         };
         let mut ends: Vec<Finish> = ended.unwrap_or_else(failed);
         let own = ends.remove(0);
@@ -60,11 +65,11 @@ impl Leading<'_> {
     }
 
     /// Which calls the other ranks are in; without those that serve.
-    fn begin(&mut self, number: u64, call: Call) -> Result<Vec<(usize, Begun)>> {
+    fn begin(&mut self, problem: u64, called: Called) -> Result<Vec<(usize, Begun)>> {
         self.leader.serve.resize(self.ranks.size, false);
         self.members = (1..self.ranks.size).filter(|rank| !self.leader.serve[*rank]).collect();
         let known = |rank: usize| self.leader.told.as_ref().map(|told| told[rank].revisions);
-        let answers = self.ask(BEGIN, |rank| Begin { problem: number, call, known: known(rank) })?;
+        let answers = self.ask(BEGIN, |rank| Begin { problem, called, known: known(rank) })?;
         let mut begun = Vec::with_capacity(answers.len());
         for (rank, answer) in answers {
             match value::<Option<Begun>>(&answer)? {
@@ -75,36 +80,132 @@ impl Leading<'_> {
         Ok(begun)
     }
 
-    /// What every rank gets.
-    fn led(&mut self, call: Call, begun: Vec<(usize, Begun)>) -> Result<Vec<Finish>> {
+    /// What every rank gets, rank 0 first.
+    fn led(
+        &mut self,
+        called: Called,
+        begun: Vec<(usize, Begun)>,
+        given: Option<Given>,
+    ) -> Result<Vec<Finish>> {
         if let Some(lending) = &mut self.all.prepared.lending {
             lending.serve.clone_from(&self.leader.serve);
             lending.serve[0] = true;
         }
+        match called.call {
+            Call::Setup | Call::Solve => self.solved(called.call, begun),
+            Call::Check => self.checked(begun, given),
+            Call::OpenMotion => self.open_motion(called.number as usize),
+            Call::Dependent => self.dependent(),
+            Call::Write | Call::Read => Err(for_one_rank()),
+            Call::SaveState => {
+                self.save(called.number as usize);
+                Ok(self.each(|_| Finish::default()))
+            }
+            Call::RestoreState => {
+                let fits = self.fit(&begun, called.number as usize)?;
+                let fits = self.restore(called.number as usize, fits);
+                Ok(self.each(|_| Finish { fits, ..Finish::default() }))
+            }
+        }
+    }
+
+    /// Rank 0, then the others that have a part.
+    fn each(&self, end: impl FnMut(usize) -> Finish) -> Vec<Finish> {
+        std::iter::once(0).chain(self.members.iter().copied()).map(end).collect()
+    }
+
+    fn solved(&mut self, call: Call, begun: Vec<(usize, Begun)>) -> Result<Vec<Finish>> {
         self.gather(begun)?;
-        let Self { leader, own, all, .. } = self;
-        std::mem::swap(&mut all.host, &mut own.host);
+        std::mem::swap(&mut self.all.host, &mut self.own.host);
         let ended = match call {
-            Call::Setup => all.setup(),
-            Call::Solve => all.solve().map(drop),
+            Call::Setup => self.all.setup(),
+            _ => self.all.solve().map(drop),
         };
-        std::mem::swap(&mut all.host, &mut own.host);
+        std::mem::swap(&mut self.all.host, &mut self.own.host);
+        let all = &self.all;
         let answer = all.current().map(|current| &*current.answer).filter(|_| call == Call::Solve);
-        let split = Split::new(&leader.order, &all.model, answer)?;
+        let split = Split::new(&self.leader.order, &all.model, answer)?;
         let failure = ended.err().map(|error| Failure(split.error(error)));
-        let finish = |rank: usize| Finish {
+        Ok(self.each(|rank| Finish {
             failure: failure.clone(),
             share: all.findings.as_ref().map(|findings| split.share(rank, answer, findings)),
-        };
-        Ok(std::iter::once(0).chain(self.members.iter().copied()).map(finish).collect())
+            ..Finish::default()
+        }))
+    }
+
+    fn checked(&mut self, mut begun: Vec<(usize, Begun)>, given: Option<Given>) -> Result<Vec<Finish>> {
+        let lost = || Error::new(Kind::Internal, "a rank has given no answer to check");
+        let mut answers = vec![(0, given.ok_or_else(lost)?)];
+        for (rank, of) in &mut begun {
+            answers.push((*rank, of.answer.take().ok_or_else(lost)?));
+        }
+        self.gather(begun)?;
+        let all = merged(&self.leader.order, &answers);
+        let [lambda, mu, tangential] = [0, 1, 2].map(|kind| &all.forces[kind][..]);
+        let candidate = Candidate { u: &all.u, lambda, mu, tangential };
+        std::mem::swap(&mut self.all.host, &mut self.own.host);
+        let checked = self.all.check_alone_with(candidate, |_, _| Ok(all.left.clone()));
+        std::mem::swap(&mut self.all.host, &mut self.own.host);
+        let split = Split::new(&self.leader.order, &self.all.model, None)?;
+        let certificate = Some(split.certificate(&checked.map_err(|error| split.error(error))?));
+        Ok(self.each(|_| Finish { certificate, ..Finish::default() }))
+    }
+
+    fn open_motion(&mut self, k: usize) -> Result<Vec<Finish>> {
+        let open = self.all.open_motion(k)?;
+        let split = Split::new(&self.leader.order, &self.all.model, None)?;
+        let motion = |rank: usize| Some((split.own(rank, &open.v), split.own_body(rank, open.body?)));
+        Ok(self.each(|rank| Finish { motion: motion(rank), ..Finish::default() }))
+    }
+
+    fn dependent(&mut self) -> Result<Vec<Finish>> {
+        let rows = self.all.dependent_equalities()?;
+        let split = Split::new(&self.leader.order, &self.all.model, None)?;
+        Ok(self.each(|rank| Finish { rows: split.own_rows(rank, &rows), ..Finish::default() }))
+    }
+
+    /// Whether the answers that all ranks have saved are those of their data, with the present matrices.
+    fn fit(&self, begun: &[(usize, Begun)], number: usize) -> Result<bool> {
+        if let Some((rank, failure)) = begun.iter().find_map(|(rank, of)| Some((*rank, of.refused.clone()?)))
+        {
+            return Err(failure.0.rank(rank));
+        }
+        let own = self.own.restorable(number).map_err(|e| e.rank(0))?;
+        let told = self.leader.told.as_ref();
+        let same = told.is_some_and(|told| told[0].revisions == Revised::of(&self.own.model));
+        Ok(own && same && begun.iter().all(|(_, of)| of.fits && of.told.is_none()))
     }
 }
 
 /// Whether all ranks are in this call.
-fn together(number: u64, call: Call, begun: &[(usize, Begun)]) -> Result<()> {
-    let is_other = |(_, of): &&(usize, Begun)| (of.problem, of.call) != (number, call);
+fn together(problem: u64, called: Called, begun: &[(usize, Begun)]) -> Result<()> {
+    let is_other = |(_, of): &&(usize, Begun)| (of.problem, of.called) != (problem, called);
     let Some((rank, of)) = begun.iter().find(is_other) else { return Ok(()) };
-    let another = if of.problem == number { "" } else { " for another problem" };
-    let what = format!("rank {rank} is in {}{another}, rank 0 in {}", of.call.name(), call.name());
+    let name = |called: Called| match called.number {
+        0 => called.call.name().to_owned(),
+        number => format!("{} with number {number}", called.call.name()),
+    };
+    let another = if of.problem == problem { "" } else { " for another problem" };
+    let what = format!("rank {rank} is in {}{another}, rank 0 in {}", name(of.called), name(called));
     Err(Error::new(Kind::State, what))
+}
+
+/// An answer on the bodies and rows of all ranks.
+fn merged(order: &Order, answers: &[(usize, Given)]) -> Given {
+    let of: HashMap<usize, &Given> = answers.iter().map(|(rank, of)| (*rank, of)).collect();
+    let starts = order.starts();
+    let values = |pick: fn(&Given) -> &[f64]| {
+        let mut all = Vec::new();
+        for (body, at) in order.bodies.iter().enumerate() {
+            let (start, n) = (starts[body], order.offsets[body + 1] - order.offsets[body]);
+            let own = of.get(&at.rank).and_then(|of| pick(of).get(start..start + n));
+            all.extend_from_slice(own.unwrap_or(&vec![0.0; n]));
+        }
+        all
+    };
+    let forces = |kind: usize| {
+        let own = |at: &At| of.get(&at.rank).and_then(|of| of.forces[kind].get(at.number)).copied();
+        order.rows[kind].iter().map(|at| own(at).unwrap_or(0.0)).collect()
+    };
+    Given { u: values(|of| &of.u), left: values(|of| &of.left), forces: (0..3).map(forces).collect() }
 }

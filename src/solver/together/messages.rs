@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::body::{wire_struct, Facts};
+use crate::certificate::Certificate;
 use crate::gathering::{Copies, Revised, Told, Values};
 use crate::ranks::wire_enum;
 use crate::solver::together::failure::Failure;
@@ -20,6 +21,20 @@ pub const FINISH: u32 = 6;
 pub enum Call {
     Setup,
     Solve,
+    Check,
+    SaveState,
+    RestoreState,
+    OpenMotion,
+    Dependent,
+    Write,
+    Read,
+}
+
+/// A call with the number that all ranks have to give: of a state or a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Called {
+    pub call: Call,
+    pub number: u64,
 }
 
 impl Call {
@@ -27,6 +42,13 @@ impl Call {
         match self {
             Self::Setup => "feti_setup",
             Self::Solve => "feti_solve",
+            Self::Check => "feti_check",
+            Self::SaveState => "feti_state_save",
+            Self::RestoreState => "feti_state_restore",
+            Self::OpenMotion => "feti_diagnosis_undetermined",
+            Self::Dependent => "feti_diagnosis_dependent",
+            Self::Write => "feti_problem_write",
+            Self::Read => "feti_problem_read",
         }
     }
 }
@@ -34,17 +56,31 @@ impl Call {
 /// Which call rank 0 is in, and what it knows of the part of this rank.
 pub struct Begin {
     pub problem: u64,
-    pub call: Call,
+    pub called: Called,
     pub known: Option<Revised>,
 }
 
 /// Which call this rank is in, and what rank 0 does not know of its part.
 pub struct Begun {
     pub problem: u64,
-    pub call: Call,
+    pub called: Called,
     pub refused: Option<Failure>,
     pub told: Option<Told>,
     pub values: Option<Values>,
+    /// An answer to be checked.
+    pub answer: Option<Given>,
+    /// The answer of the state is that of its data.
+    pub fits: bool,
+}
+
+/// An answer on the bodies and rows of a rank.
+#[derive(Clone)]
+pub struct Given {
+    pub u: Vec<f64>,
+    /// `f - K u`, if unknowns share numbers.
+    pub left: Vec<f64>,
+    /// Of contact, equality and tangential rows.
+    pub forces: Vec<Vec<f64>>,
 }
 
 /// Numbers that rows of other ranks name, or that other ranks have, ascending, and the name of the first part, those of others following.
@@ -76,14 +112,24 @@ pub struct PartTold {
 pub struct Finish {
     pub failure: Option<Failure>,
     pub share: Option<Share>,
+    /// Of a check.
+    pub certificate: Option<Certificate>,
+    /// An open motion on the bodies of this rank, and its fastest body, if this rank has it.
+    pub motion: Option<(Vec<f64>, Option<usize>)>,
+    /// Rows of this rank.
+    pub rows: Vec<usize>,
+    /// An answer that was saved is that of the present data.
+    pub fits: bool,
 }
 
-wire_enum!(Call { Setup, Solve });
-wire_struct!(Begin { problem, call, known });
-wire_struct!(Begun { problem, call, refused, told, values });
+wire_enum!(Call { Setup, Solve, Check, SaveState, RestoreState, OpenMotion, Dependent, Write, Read });
+wire_struct!(Called { call, number });
+wire_struct!(Begin { problem, called, known });
+wire_struct!(Begun { problem, called, refused, told, values, answer, fits });
+wire_struct!(Given { u, left, forces });
 wire_struct!(Touch { numbers, first });
 wire_struct!(Touched { copies, bodies });
 wire_struct!(PartsTold { parts, loose });
 wire_struct!(PartTold { order, dofs, facts });
 wire_struct!(Facts { entries, largest, length, last_digit, keys });
-wire_struct!(Finish { failure, share });
+wire_struct!(Finish { failure, share, certificate, motion, rows, fits });

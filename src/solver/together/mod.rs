@@ -8,23 +8,28 @@ mod leader;
 mod messages;
 mod share;
 mod split;
+mod states;
 
 use std::sync::Arc;
 
 use crate::body::Lending;
+use crate::certificate::Certificate;
 use crate::error::{Error, Kind, Result};
 use crate::model::HostModel;
 use crate::ranks::Ranks;
 use crate::serving::Rank;
 use crate::solve::Report;
+use crate::solver::check::{left_over, Candidate};
+use crate::solver::findings::rigid_motion;
 use crate::solver::joined::{Follower, Joined, Leader, Role};
 use crate::solver::problem::Problem;
+use crate::solver::undetermined::OpenMotion;
 use leader::Leading;
-use messages::{Call, Finish};
+use messages::{Call, Called, Finish, Given};
 
 impl Problem {
-    /// This rank gives its part of the problem: bodies and rows, which rows of other ranks may name by numbers. On every rank, before the
-    /// first body; rank 0 has no `rank`.
+    /// This rank gives its part of the problem: bodies and rows, which rows of other ranks may name by numbers. On every rank that gives
+    /// some, before the first body; rank 0 has no `rank`. All ranks of the stream that do so number their problems alike.
     pub fn join(&mut self, ranks: Arc<Ranks>, rank: Option<Rank>) -> Result<()> {
         if !self.model.bodies.is_empty() {
             return Err(Error::new(Kind::State, "the ranks must be given before the first body"));
@@ -54,64 +59,114 @@ impl Problem {
         answered == Some(self.model.revisions)
     }
 
-    /// `feti_setup` on all ranks; none if rank 0 is alone with its problem.
-    pub(super) fn set_up_together(&mut self) -> Result<Option<()>> {
-        Ok(self.all_together(Call::Setup)?.map(drop))
+    /// The problem is solved on several ranks: what is asked is not known on one of them.
+    pub(super) fn check_alone(&self) -> Result<()> {
+        let is_alone = self.joined.as_ref().is_none_or(|joined| match &joined.role {
+            Role::Leads(leader) => leader.told.is_none(),
+            Role::Follows(_) => false,
+        });
+        if is_alone {
+            return Ok(());
+        }
+        Err(for_one_rank())
     }
 
-    /// `feti_solve` on all ranks; none if rank 0 is alone with its problem.
+    /// As `setup`, by all ranks; false if rank 0 is alone with its problem. So in what follows.
+    pub(super) fn set_up_together(&mut self) -> Result<bool> {
+        Ok(self.together(Call::Setup, 0, None)?.is_some())
+    }
+
     pub(super) fn solve_together(&mut self) -> Result<Option<Report>> {
         let missing = || Error::new(Kind::Internal, "a solve of all ranks left nothing");
-        self.all_together(Call::Solve)?.map(|report| report.ok_or_else(missing)).transpose()
+        let report = |problem: &Self| problem.report().cloned().ok_or_else(missing);
+        Ok(self.together(Call::Solve, 0, None)?.map(|_| report(self)).transpose()?)
     }
 
-    fn all_together(&mut self, call: Call) -> Result<Option<Option<Report>>> {
+    pub(super) fn check_together(&mut self, answer: Candidate) -> Result<Option<Certificate>> {
         if self.joined.is_none() {
             return Ok(None);
         }
-        let missing = || Error::new(Kind::Internal, "a problem of one rank was solved on several");
-        let mut joined = self.joined.take().ok_or_else(missing)?;
-        let Joined { ranks, problem, role, .. } = &mut *joined;
-        let ended = match role {
-            Role::Leads(leader) => {
-                let mut all = self.all.take().ok_or_else(missing)?;
-                let mut leading = Leading { ranks, leader, own: self, all: &mut all, members: Vec::new() };
-                let ended = leading.lead(*problem, call);
-                self.all = Some(all);
-                ended
-            }
-            Role::Follows(follower) => follower.follow(self, ranks, *problem, call).map(Some),
-        };
-        let taken = ended.and_then(|end| end.map(|end| self.take_end(end, call)).transpose());
-        match &taken {
-            Ok(Some(Some(_))) => joined.answered = Some(self.model.revisions),
-            Ok(None) => joined.answered = None,
-            _ => {}
+        let Candidate { u, lambda, mu, tangential } = answer;
+        let left = if self.model.settings.glue == 1 { left_over(&self.model, u)? } else { Vec::new() };
+        let forces = [lambda, mu, tangential].map(<[f64]>::to_vec).into();
+        let end = self.together(Call::Check, 0, Some(Given { u: u.to_vec(), left, forces }))?;
+        Ok(end.and_then(|end| end.certificate))
+    }
+
+    pub(super) fn open_motion_together(&mut self, k: usize) -> Result<Option<OpenMotion>> {
+        let Some(end) = self.together(Call::OpenMotion, k as u64, None)? else { return Ok(None) };
+        let missing = || Error::new(Kind::Internal, "a motion of all ranks left nothing");
+        let (v, body) = end.motion.ok_or_else(missing)?;
+        let motion = body.and_then(|body| rigid_motion(&self.model, body, &v));
+        Ok(Some(OpenMotion { v, body, motion }))
+    }
+
+    pub(super) fn dependent_together(&mut self) -> Result<Option<Vec<usize>>> {
+        Ok(self.together(Call::Dependent, 0, None)?.map(|end| end.rows))
+    }
+
+    /// Only rank 0 alone can write or read the problem.
+    pub(super) fn check_file_together(&mut self, writes: bool) -> Result<()> {
+        let call = if writes { Call::Write } else { Call::Read };
+        self.together(call, 0, None).map(drop)
+    }
+
+    fn together(&mut self, call: Call, number: u64, given: Option<Given>) -> Result<Option<Finish>> {
+        let Some(mut joined) = self.joined.take() else { return Ok(None) };
+        let called = Called { call, number };
+        let ended = self.with_all(&mut joined, called, given);
+        let taken = ended.and_then(|end| end.map(|end| self.take_end(end, called, &mut joined)).transpose());
+        if call == Call::Solve && matches!(taken, Ok(None)) {
+            joined.answered = None;
         }
         self.joined = Some(joined);
         taken
     }
 
-    /// Takes what belongs to this rank.
-    fn take_end(&mut self, Finish { failure, share }: Finish, call: Call) -> Result<Option<Report>> {
-        if call == Call::Solve {
-            self.history.current = None;
+    fn with_all(
+        &mut self,
+        joined: &mut Joined,
+        called: Called,
+        given: Option<Given>,
+    ) -> Result<Option<Finish>> {
+        let Joined { ranks, problem, role, .. } = joined;
+        match role {
+            Role::Leads(leader) => {
+                let missing = || Error::new(Kind::Internal, "rank 0 has no problem of all ranks");
+                let mut all = self.all.take().ok_or_else(missing)?;
+                let mut leading = Leading { ranks, leader, own: self, all: &mut all, members: Vec::new() };
+                let ended = leading.lead(*problem, called, given);
+                self.all = Some(all);
+                ended
+            }
+            Role::Follows(follower) => follower.follow(self, ranks, *problem, (called, given)).map(Some),
         }
-        let mut report = None;
-        if let Some(share) = share {
+    }
+
+    /// Takes what belongs to this rank.
+    fn take_end(&mut self, mut end: Finish, called: Called, joined: &mut Joined) -> Result<Finish> {
+        if called.call == Call::Solve {
+            (self.history.current, joined.answered) = (None, None);
+        }
+        if let Some(share) = end.share.take() {
             let mut findings = share.findings;
             findings.motion = findings.own_motion(&self.model);
             self.findings = Some(findings);
-            if let Some((told, own)) = share.answer {
-                report = Some(told.clone());
-                self.history().keep(own.into_answer(told)?, 0);
+            if let Some((report, own)) = share.answer {
+                self.history().keep(own.into_answer(report)?, 0);
+                joined.answered = Some(self.model.revisions);
             }
         }
-        match failure {
+        match end.failure.take() {
             Some(failure) => Err(failure.0),
-            None => Ok(report),
+            None => Ok(end),
         }
     }
+}
+
+fn for_one_rank() -> Error {
+    let what = "this call is not available for a problem to which several ranks have given bodies";
+    Error::new(Kind::Unsupported, what)
 }
 
 /// Refuses a part of the problem that lacks data, or that other ranks cannot solve with.

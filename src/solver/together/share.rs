@@ -9,7 +9,7 @@ use crate::progress::PhaseReport;
 use crate::qp::{Counts, Tries};
 use crate::ranks::{damaged, wire_enum};
 use crate::setup::Work;
-use crate::solve::{Answer, Outcome, Pushes, Report, RowState, Slide};
+use crate::solve::{Answer, OfOthers, Outcome, Report, RowState, Slide};
 use crate::solver::findings::Findings;
 use crate::solver::together::failure::{put_kind, take_kind};
 
@@ -30,12 +30,26 @@ pub struct OwnAnswer {
     pub states: Vec<RowState>,
     pub force_errors: Vec<f64>,
     pub without: Vec<bool>,
-    pub pushes: Pushes,
+    /// Some bodies of some rank have no answer.
+    pub fails: bool,
+    pub of_others: OfOthers,
 }
 
 wire_struct!(Share { answer, findings });
-wire_struct!(OwnAnswer { u, forces, slips, friction, alpha, gaps, states, force_errors, without, pushes });
-wire_struct!(Pushes { of_rows, of_glue });
+wire_struct!(OwnAnswer {
+    u,
+    forces,
+    slips,
+    friction,
+    alpha,
+    gaps,
+    states,
+    force_errors,
+    without,
+    fails,
+    of_others
+});
+wire_struct!(OfOthers { of_rows, of_glue, reached });
 wire_struct!(Report {
     outcome,
     body,
@@ -185,25 +199,24 @@ impl Wire for Findings {
 impl OwnAnswer {
     /// As the answer of a problem.
     pub fn into_answer(self, report: Report) -> Result<Answer> {
-        let Self { u, forces, slips, friction, alpha, gaps, states, force_errors, without, pushes } = self;
+        let Self { forces, without, fails, of_others, .. } = self;
         let [lambda, mu, tangential] = <[Vec<f64>; 3]>::try_from(forces).map_err(|_| damaged())?;
-        let (failed, cleaned, pushes) = (Vec::new(), Vec::new(), Some(Box::new(pushes)));
         Ok(Answer {
             report,
-            u,
+            u: self.u,
             lambda,
             mu,
             tangential,
-            slips,
-            friction,
-            alpha,
-            gaps,
-            states,
-            force_errors,
-            failed,
-            cleaned,
+            slips: self.slips,
+            friction: self.friction,
+            alpha: self.alpha,
+            gaps: self.gaps,
+            states: self.states,
+            force_errors: self.force_errors,
+            failed: vec![fails],
+            cleaned: Vec::new(),
             without,
-            pushes,
+            of_others: Some(Box::new(of_others)),
         })
     }
 }

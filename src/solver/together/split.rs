@@ -5,7 +5,7 @@ use crate::constraints::RowKind;
 use crate::error::{Error, Place, Proof, Result};
 use crate::gathering::{At, Order};
 use crate::model::{HostModel, Joint};
-use crate::solve::{Answer, Pushes, Report};
+use crate::solve::{Answer, OfOthers, Report};
 use crate::solver::findings::Findings;
 use crate::solver::together::share::{OwnAnswer, Share};
 
@@ -45,16 +45,17 @@ pub struct Split<'a> {
     order: &'a Order,
     model: &'a HostModel,
     /// Of every rank.
-    pushes: Vec<Pushes>,
+    others: Vec<OfOthers>,
 }
 
 impl<'a> Split<'a> {
     pub fn new(order: &'a Order, model: &'a HostModel, answer: Option<&Answer>) -> Result<Self> {
-        let nothing = || Pushes { of_rows: vec![Vec::new(); RowKind::ALL.len()], of_glue: Vec::new() };
-        let ranks = order.bodies.iter().map(|at| at.rank + 1).max().unwrap_or(0);
-        let mut pushes: Vec<Pushes> = (0..ranks).map(|_| nothing()).collect();
-        let Some(answer) = answer else { return Ok(Self { order, model, pushes }) };
-        let starts = starts(order, model);
+        let nothing = || OfOthers { of_rows: vec![Vec::new(); RowKind::ALL.len()], ..OfOthers::default() };
+        let all = [&order.bodies, &order.nodes].into_iter().flatten();
+        let ranks = all.map(|at| at.rank + 1).max().unwrap_or(0);
+        let mut others: Vec<OfOthers> = (0..ranks).map(|_| nothing()).collect();
+        let Some(answer) = answer else { return Ok(Self { order, model, others }) };
+        let starts = order.starts();
         let own = |j: usize| {
             let body = model.offsets[1..].partition_point(|end| *end <= j);
             (order.bodies[body].rank, j - model.offsets[body] + starts[body])
@@ -65,7 +66,7 @@ impl<'a> Split<'a> {
             for (i, force) in forces.filter(|(_, force)| **force != 0.0) {
                 for (j, v) in rows.matrix.row(i) {
                     let (rank, j) = own(j);
-                    pushes[rank].of_rows[kind as usize].push((j, -force * v));
+                    others[rank].of_rows[kind as usize].push((j, -force * v));
                 }
             }
         }
@@ -74,10 +75,17 @@ impl<'a> Split<'a> {
         {
             for (j, push) in [(before, -mu), (after, *mu)] {
                 let (rank, j) = own(j);
-                pushes[rank].of_glue.push((j, push));
+                others[rank].of_glue.push((j, push));
             }
         }
-        Ok(Self { order, model, pushes })
+        let reached = model.friction.reached(&answer.u, &answer.tangential)?;
+        for rank in 0..ranks {
+            let dim = model.friction.dim;
+            let nodes = Own::of(order, rank).nodes;
+            others[rank].reached =
+                nodes.iter().flat_map(|k| &reached[dim * k..dim * (k + 1)]).copied().collect();
+        }
+        Ok(Self { order, model, others })
     }
 
     fn body(&self, body: usize) -> At {
@@ -107,17 +115,40 @@ impl<'a> Split<'a> {
     }
 
     fn report(&self, report: &Report) -> Report {
-        let mut told = report.clone();
-        let Order { bodies, rows, nodes, .. } = self.order;
-        for entry in [&mut told.certificate.equilibrium, &mut told.certificate.balance] {
-            named(entry, bodies);
-        }
-        let Certificate { penetration, negative_force, complementarity, .. } = &mut told.certificate;
+        Report { certificate: self.certificate(&report.certificate), ..report.clone() }
+    }
+
+    /// With the places of all ranks.
+    pub fn certificate(&self, certificate: &Certificate) -> Certificate {
+        let (mut told, Order { bodies, rows, nodes, .. }) = (*certificate, self.order);
+        let Certificate {
+            equilibrium, balance, penetration, equality, negative_force, complementarity, ..
+        } = &mut told;
+        [equilibrium, balance].into_iter().for_each(|entry| named(entry, bodies));
         [penetration, negative_force, complementarity].into_iter().for_each(|entry| named(entry, &rows[0]));
-        named(&mut told.certificate.equality, &rows[1]);
-        let Certificate { friction_cone, friction_work, friction_stick, .. } = &mut told.certificate;
+        named(equality, &rows[1]);
+        let Certificate { friction_cone, friction_work, friction_stick, .. } = &mut told;
         [friction_cone, friction_work, friction_stick].into_iter().for_each(|entry| named(entry, nodes));
         told
+    }
+
+    /// Of values over all unknowns those of the bodies of a rank.
+    pub fn own(&self, rank: usize, all: &[f64]) -> Vec<f64> {
+        let own = Own::of(self.order, rank).bodies;
+        own.into_iter().flat_map(|body| &all[self.model.range(body)]).copied().collect()
+    }
+
+    /// The number of a body on this rank.
+    pub fn own_body(&self, rank: usize, body: usize) -> Option<usize> {
+        Some(self.body(body)).filter(|at| at.rank == rank).map(|at| at.number)
+    }
+
+    /// Of equality rows those of a rank, ascending.
+    pub fn own_rows(&self, rank: usize, rows: &[usize]) -> Vec<usize> {
+        let at = rows.iter().filter_map(|row| self.order.rows[1].get(*row)).filter(|at| at.rank == rank);
+        let mut own: Vec<usize> = at.map(|at| at.number).collect();
+        own.sort_unstable();
+        own
     }
 
     /// What a rank gets.
@@ -142,7 +173,8 @@ impl<'a> Split<'a> {
             states: picked(&answer.states, &own.rows[0]),
             force_errors: picked(&answer.force_errors, &own.bodies),
             without: picked(&answer.without, &own.bodies),
-            pushes: self.pushes.get(rank).cloned().unwrap_or_default(),
+            fails: answer.without.contains(&true),
+            of_others: self.others.get(rank).cloned().unwrap_or_default(),
         }
     }
 
@@ -192,17 +224,4 @@ impl<'a> Split<'a> {
 fn named(entry: &mut Entry, all: &[At]) {
     let Some(at) = entry.place.and_then(|place| all.get(place)) else { return };
     (entry.rank, entry.place) = (at.rank, Some(at.number));
-}
-
-/// Of every body of all ranks its first unknown among those of its rank.
-fn starts(order: &Order, model: &HostModel) -> Vec<usize> {
-    let mut bodies: Vec<(At, usize)> = order.bodies.iter().copied().zip(0..).collect();
-    bodies.sort_unstable();
-    let (mut starts, mut end) = (vec![0; bodies.len()], (0, 0));
-    for (at, body) in bodies {
-        let start = if at.rank == end.0 { end.1 } else { 0 };
-        starts[body] = start;
-        end = (at.rank, start + model.range(body).len());
-    }
-    starts
 }

@@ -85,7 +85,7 @@ fn serial(count: usize) -> (Vec<Vec<u64>>, Vec<u64>, Vec<Vec<u64>>) {
 fn chains_on_several_ranks_have_the_bits_of_one() {
     const COUNT: usize = 6;
     let (u, lambda, reactions) = serial(COUNT);
-    for size in [1, 2, 3, 4] {
+    for size in [2, 3, 4] {
         // bodies and rows on ranks of their own choice, in falling order
         let has_body = |rank: usize, p: usize| (3 * p + 1) % size == rank;
         let has_row = |rank: usize, p: usize| (p * p) % size == rank;
