@@ -1450,6 +1450,8 @@ typedef struct feti_findings {
   int64_t soft_body;
   /** After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN. */
   double capacity;
+  /** Rank that has given `body` or `row`, if several ranks have given some; -1: does not apply. */
+  int64_t rank;
 } feti_findings;
 
 /**
@@ -1864,6 +1866,27 @@ typedef struct feti_certificate {
   int64_t friction_work_node;
   /** Node with the worst slip, from 0; -1: none. */
   int64_t friction_stick_node;
+  /**
+   * Rank that has given the body with the worst equilibrium, 0 without other ranks; -1: none. So the
+   * following.
+   */
+  int64_t equilibrium_rank;
+  /** Rank of the body with the worst balance. */
+  int64_t balance_rank;
+  /** Rank of the row with the worst penetration. */
+  int64_t penetration_rank;
+  /** Rank of the equality row with the worst error. */
+  int64_t equality_rank;
+  /** Rank of the row with the worst negative force. */
+  int64_t force_rank;
+  /** Rank of the row with the worst complementarity. */
+  int64_t complementarity_rank;
+  /** Rank of the node with the worst excess over its bound. */
+  int64_t friction_cone_rank;
+  /** Rank of the node with the worst deficit of work. */
+  int64_t friction_work_rank;
+  /** Rank of the node with the worst slip. */
+  int64_t friction_stick_rank;
 } feti_certificate;
 
 /**
@@ -2032,18 +2055,24 @@ typedef struct feti_communicator {
 } feti_communicator;
 
 /**
- * Lends bodies of the problem to the other ranks, which serve (feti_serve).
+ * Makes the problem one of several ranks: each may give bodies and rows, and rank 0 may lend bodies to
+ * ranks that serve.
  *
- * Rank 0 calls this function for each of its problems, before the first body; all that follows is called
- * as without other ranks, and the answer has the same bits. The other ranks call feti_serve in its place.
- * The library copies the table, and calls its functions in setups, solves and checks, on the thread that
- * called the library, in the floating-point environment of that thread. It calls feti_communicator.release
- * once when the problem is destroyed, if this call has returned FETI_OK. The functions must not exit by
- * longjmp or an exception, nor call the library for a problem whose table has the same `user`. With one
- * rank the call is checked, and changes nothing.
+ * Each rank that has a part of the problem calls this function, before the first body, in the same order
+ * on all ranks if there are several problems. It then gives its own bodies and rows, which count from 0 on
+ * this rank, and gets results of its own. Rows may name unknowns of other ranks by the host's numbers
+ * (feti_body_numbering_i32, `body` = NULL). Setups, solves and checks are collective: all these ranks make
+ * them, and get the same status. A rank without a part calls feti_serve instead; if all others serve, rank
+ * 0 has the whole model, and calls the library as without other ranks. The answer has the same bits
+ * whoever gives what, and on any number of ranks that serve.
  *
- * FETI_STATE if the problem has a body or a table already; FETI_UNSUPPORTED on ranks other than 0, whose
- * problems are their own: they have to call feti_serve.
+ * The library copies the table, and calls its functions in collective calls, on the thread that called the
+ * library, in the floating-point environment of that thread. It calls feti_communicator.release once when
+ * the problem is destroyed, if this call has returned FETI_OK. The functions must not exit by longjmp or
+ * an exception, nor call the library for a problem whose table has the same `user`. With one rank the call
+ * is checked, and changes nothing.
+ *
+ * FETI_STATE if the problem has a body or a table already.
  *
  * @param by the table, as feti_communicator describes it
  */
@@ -2139,6 +2168,8 @@ typedef struct feti_error_detail {
   int64_t element;
   /** Node with friction; -1: does not apply. */
   int64_t node;
+  /** Rank whose numbers these are, if several have given bodies or rows; -1: does not apply. */
+  int64_t rank;
 } feti_error_detail;
 
 /**

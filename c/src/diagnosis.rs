@@ -266,5 +266,6 @@ fn described(from: &Findings) -> feti_findings {
         soft_bodies: from.soft.len() as i64,
         soft_body: known(from.soft.first().copied()),
         capacity: from.capacity.unwrap_or(f64::NAN),
+        rank: known(from.place.rank),
     }
 }

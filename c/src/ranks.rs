@@ -10,19 +10,23 @@ use crate::header::types::{
 use crate::progress::User;
 use feti_contact::error::{Error, Kind, Result};
 use feti_contact::platform::instant;
-use feti_contact::solver::{serve, Link, Ranks};
+use feti_contact::solver::{serve, Link, Rank, Ranks};
 
-/// Lends bodies of the problem to the other ranks, which serve (feti_serve).
+/// Makes the problem one of several ranks: each may give bodies and rows, and rank 0 may lend bodies to ranks that serve.
 ///
-/// Rank 0 calls this function for each of its problems, before the first body; all that follows is called as without other
-/// ranks, and the answer has the same bits. The other ranks call feti_serve in its place. The library copies the table, and
-/// calls its functions in setups, solves and checks, on the thread that called the library, in the floating-point
-/// environment of that thread. It calls feti_communicator.release once when the problem is destroyed, if this call has
-/// returned FETI_OK. The functions must not exit by longjmp or an exception, nor call the library for a problem whose table
-/// has the same `user`. With one rank the call is checked, and changes nothing.
+/// Each rank that has a part of the problem calls this function, before the first body, in the same order on all ranks if
+/// there are several problems. It then gives its own bodies and rows, which count from 0 on this rank, and gets results of
+/// its own. Rows may name unknowns of other ranks by the host's numbers (feti_body_numbering_i32, `body` = NULL). Setups,
+/// solves and checks are collective: all these ranks make them, and get the same status. A rank without a part calls
+/// feti_serve instead; if all others serve, rank 0 has the whole model, and calls the library as without other ranks.
+/// The answer has the same bits whoever gives what, and on any number of ranks that serve.
 ///
-/// FETI_STATE if the problem has a body or a table already; FETI_UNSUPPORTED on ranks other than 0, whose problems are their own:
-/// they have to call feti_serve.
+/// The library copies the table, and calls its functions in collective calls, on the thread that called the library, in the
+/// floating-point environment of that thread. It calls feti_communicator.release once when the problem is destroyed, if this
+/// call has returned FETI_OK. The functions must not exit by longjmp or an exception, nor call the library for a problem
+/// whose table has the same `user`. With one rank the call is checked, and changes nothing.
+///
+/// FETI_STATE if the problem has a body or a table already.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -42,15 +46,8 @@ pub unsafe extern "C" fn feti_communicator_set(p: *mut feti_problem, by: *const 
         if instant(|| lock(&GIVEN).contains_key(&p.addr())) {
             return Err(Error::new(Kind::State, "the problem has its ranks already"));
         }
-        if table.rank > 0 {
-            let rank = table.rank;
-            let what = format!(
-                "this is rank {rank}: only rank 0 lends bodies, the other ranks have to call feti_serve"
-            );
-            return Err(Error::new(Kind::Unsupported, what));
-        }
         if let Some(functions) = table.functions {
-            problem.lend_to(stream(&table, functions)?)?;
+            problem.join(stream(&table, functions)?)?;
         }
         let given = Given { user: table.user, release: table.release, ranks: table.size };
         instant(|| lock(&GIVEN).insert(p.addr(), given));
@@ -80,11 +77,7 @@ pub unsafe extern "C" fn feti_serve(by: *const feti_communicator) -> i32 {
         // SAFETY: `struct_size` bytes guaranteed by the caller.
         let table = unsafe { Table::read(by) }?;
         let Some(functions) = table.functions else { return Ok(()) };
-        let ranks = match table.rank {
-            0 => stream(&table, functions)?,
-            rank => Ranks::new(rank, table.size, Box::new(HostLink { functions, user: table.user })),
-        };
-        serve(&ranks, threads(table.local_size))
+        serve(&*stream(&table, functions)?, threads(table.local_size))
     })
 }
 
@@ -173,8 +166,8 @@ impl Link for HostLink {
     }
 }
 
-/// The open streams of messages of rank 0, by `user` of their tables. They belong to the problems that use them.
-static STREAMS: Mutex<Vec<(usize, Weak<Ranks>)>> = Mutex::new(Vec::new());
+/// The open streams of messages, by `user` of their tables. They belong to the problems that use them.
+static STREAMS: Mutex<Vec<(usize, Weak<Rank>)>> = Mutex::new(Vec::new());
 
 /// The tables of problems, by the numbers of their handles.
 static GIVEN: Mutex<BTreeMap<usize, Given>> = Mutex::new(BTreeMap::new());
@@ -205,25 +198,26 @@ pub fn count_of(p: *mut feti_problem) -> usize {
     instant(|| lock(&GIVEN).get(&p.addr()).map_or(1, |given| given.ranks))
 }
 
-/// The stream of rank 0 with this `user`: the one that other problems use, or a new one. A stream that has failed or been
-/// ended is used no more.
-fn stream(table: &Table, functions: Functions) -> Result<Arc<Ranks>> {
-    let (name, size) = (table.user.get().addr(), table.size);
+/// The stream with this `user`: the one that other problems use, or a new one. A stream that has failed or been ended is
+/// used no more.
+fn stream(table: &Table, functions: Functions) -> Result<Arc<Rank>> {
+    let (name, rank, size) = (table.user.get().addr(), table.rank, table.size);
     instant(|| {
         let mut streams = lock(&STREAMS);
-        streams.retain(|(_, ranks)| ranks.upgrade().is_some_and(|ranks| !ranks.is_closed()));
-        let known = streams.iter().find(|(user, _)| *user == name).and_then(|(_, ranks)| ranks.upgrade());
-        match known {
-            Some(ranks) if ranks.size != size => {
-                let what = format!("another problem has a table with this `user`, for {} ranks", ranks.size);
-                Err(Error::argument("by", what).value(size as f64))
+        streams.retain(|(_, of)| of.upgrade().is_some_and(|of| !of.ranks.is_closed()));
+        let known = streams.iter().find(|(user, _)| *user == name).and_then(|(_, of)| of.upgrade());
+        match known.as_ref().map(|of| (of.ranks.rank, of.ranks.size)) {
+            Some(same) if same != (rank, size) => {
+                let (rank, size) = same;
+                let what = format!("another problem has a table with this `user`, for rank {rank} of {size}");
+                Err(Error::argument("by", what).value(table.size as f64))
             }
-            Some(ranks) => Ok(ranks),
-            None => {
-                let ranks = Ranks::new(0, size, Box::new(HostLink { functions, user: table.user }));
-                streams.push((name, Arc::downgrade(&ranks)));
-                Ok(ranks)
-            }
+            _ => Ok(known.unwrap_or_else(|| {
+                let link = HostLink { functions, user: table.user };
+                let of = Rank::new(Ranks::new(rank, size, Box::new(link)));
+                streams.push((name, Arc::downgrade(&of)));
+                of
+            })),
         }
     })
 }

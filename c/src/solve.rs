@@ -6,7 +6,7 @@ use crate::header::status::of_outcome;
 use crate::header::types::{feti_certificate, feti_info, feti_problem};
 use crate::ranks::count_of;
 use feti_contact::error::Result;
-use feti_contact::solver::{Candidate, Certificate, Problem, Report, Sizes, Traffic};
+use feti_contact::solver::{Candidate, Certificate, Entry, Problem, Report, Sizes, Traffic};
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.
 ///
@@ -82,6 +82,8 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
         solved.map(|report| of_outcome(&report.outcome))
     });
     if let Ok(Some(target)) = target {
+        // those of all ranks, once these have solved together
+        let sizes = found.as_ref().map_or(sizes, |report| report.sizes);
         target.write(&info_of(status, sizes, found.as_ref(), ranks));
     }
     status
@@ -267,6 +269,7 @@ fn info_of(
 }
 
 fn certificate(from: &Certificate) -> feti_certificate {
+    let rank = |entry: &Entry| known(entry.place.map(|_| entry.rank));
     feti_certificate {
         struct_size: size_of::<feti_certificate>() as i64,
         passed: i32::from(from.passed()),
@@ -292,5 +295,14 @@ fn certificate(from: &Certificate) -> feti_certificate {
         friction_cone_node: known(from.friction_cone.place),
         friction_work_node: known(from.friction_work.place),
         friction_stick_node: known(from.friction_stick.place),
+        equilibrium_rank: rank(&from.equilibrium),
+        balance_rank: rank(&from.balance),
+        penetration_rank: rank(&from.penetration),
+        equality_rank: rank(&from.equality),
+        force_rank: rank(&from.negative_force),
+        complementarity_rank: rank(&from.complementarity),
+        friction_cone_rank: rank(&from.friction_cone),
+        friction_work_rank: rank(&from.friction_work),
+        friction_stick_rank: rank(&from.friction_stick),
     }
 }

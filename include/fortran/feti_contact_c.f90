@@ -933,6 +933,8 @@ module feti_contact_c
     integer(c_int64_t) :: soft_body
     !> After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN.
     real(c_double) :: capacity
+    !> Rank that has given `body` or `row`, if several ranks have given some; -1: does not apply.
+    integer(c_int64_t) :: rank
   end type
 
   interface
@@ -1254,6 +1256,24 @@ module feti_contact_c
     integer(c_int64_t) :: friction_work_node
     !> Node with the worst slip, from 0; -1: none.
     integer(c_int64_t) :: friction_stick_node
+    !> Rank that has given the body with the worst equilibrium, 0 without other ranks; -1: none. So the following.
+    integer(c_int64_t) :: equilibrium_rank
+    !> Rank of the body with the worst balance.
+    integer(c_int64_t) :: balance_rank
+    !> Rank of the row with the worst penetration.
+    integer(c_int64_t) :: penetration_rank
+    !> Rank of the equality row with the worst error.
+    integer(c_int64_t) :: equality_rank
+    !> Rank of the row with the worst negative force.
+    integer(c_int64_t) :: force_rank
+    !> Rank of the row with the worst complementarity.
+    integer(c_int64_t) :: complementarity_rank
+    !> Rank of the node with the worst excess over its bound.
+    integer(c_int64_t) :: friction_cone_rank
+    !> Rank of the node with the worst deficit of work.
+    integer(c_int64_t) :: friction_work_rank
+    !> Rank of the node with the worst slip.
+    integer(c_int64_t) :: friction_stick_rank
   end type
 
   interface
@@ -1381,7 +1401,8 @@ module feti_contact_c
   end interface
 
   interface
-    !> Lends bodies of the problem to the other ranks, which serve (feti_serve).
+    !> Makes the problem one of several ranks: each may give bodies and rows, and rank 0 may lend bodies to ranks that
+    !> serve.
     integer(c_int32_t) function feti_communicator_set(p, by) bind(C, name="feti_communicator_set")
       import
       type(c_ptr), value :: p
@@ -1445,6 +1466,8 @@ module feti_contact_c
     integer(c_int64_t) :: element
     !> Node with friction; -1: does not apply.
     integer(c_int64_t) :: node
+    !> Rank whose numbers these are, if several have given bodies or rows; -1: does not apply.
+    integer(c_int64_t) :: rank
   end type
 
   interface

@@ -51,7 +51,7 @@ recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   ierr = told(feti_last_error_detail(found))
   if (ierr < FETI_OK) return
   call give([int(found%status, c_int64_t), int(found%argument, c_int64_t), found%body + 1, found%component + 1, &
-    found%dof + 1, found%row + 1, found%entry + 1, found%element + 1, found%node + 1], ni, idet)
+    found%dof + 1, found%row + 1, found%entry + 1, found%element + 1, found%node + 1, found%rank], ni, idet)
   call give_reals([found%value, found%limit], nr, rdet)
   name = f_text(c_loc(found%function))
 end subroutine
@@ -672,7 +672,9 @@ recursive subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ier
   if (ierr < FETI_OK) return
   call give([int(found%passed, c_int64_t), found%equilibrium_body + 1, found%balance_body + 1, found%penetration_row + &
     1, found%equality_row + 1, found%force_row + 1, found%complementarity_row + 1, found%friction_cone_node + 1, &
-    found%friction_work_node + 1, found%friction_stick_node + 1], ni, icert)
+    found%friction_work_node + 1, found%friction_stick_node + 1, found%equilibrium_rank, found%balance_rank, &
+    found%penetration_rank, found%equality_rank, found%force_rank, found%complementarity_rank, found%friction_cone_rank, &
+    found%friction_work_rank, found%friction_stick_rank], ni, icert)
   call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, &
     found%negative_force, found%complementarity, found%duality_gap, found%limit, found%friction_cone, &
     found%friction_work, found%friction_stick], nr, rcert)
@@ -695,7 +697,9 @@ recursive subroutine ftchkf(ip, n, u, m, rlam, me, rmu, nd, idim, rlt, ni, icert
   if (ierr < FETI_OK) return
   call give([int(found%passed, c_int64_t), found%equilibrium_body + 1, found%balance_body + 1, found%penetration_row + &
     1, found%equality_row + 1, found%force_row + 1, found%complementarity_row + 1, found%friction_cone_node + 1, &
-    found%friction_work_node + 1, found%friction_stick_node + 1], ni, icert)
+    found%friction_work_node + 1, found%friction_stick_node + 1, found%equilibrium_rank, found%balance_rank, &
+    found%penetration_rank, found%equality_rank, found%force_rank, found%complementarity_rank, found%friction_cone_rank, &
+    found%friction_work_rank, found%friction_stick_rank], ni, icert)
   call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, &
     found%negative_force, found%complementarity, found%duality_gap, found%limit, found%friction_cone, &
     found%friction_work, found%friction_stick], nr, rcert)
@@ -904,7 +908,7 @@ recursive subroutine ftdiag(ip, ni, idiag, nr, rdiag, ierr)
   if (ierr < FETI_OK) return
   call give([int(found%status, c_int64_t), int(found%kind, c_int64_t), found%body + 1, found%component + 1, found%dof + &
     1, found%row + 1, found%rows_involved, found%undetermined, found%redundant_rows, found%untouched_bodies, &
-    found%untouched_body + 1, found%doubtful_bodies, found%doubtful_body + 1], ni, idiag)
+    found%untouched_body + 1, found%doubtful_bodies, found%doubtful_body + 1, found%rank], ni, idiag)
   call give_reals([found%margin, found%motion, found%unheld, found%capacity], nr, rdiag)
 end subroutine
 

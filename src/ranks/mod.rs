@@ -46,8 +46,8 @@ pub struct Ranks {
     closed: AtomicBool,
     /// Requests and tokens so far.
     serial: AtomicU64,
-    /// Problems so far.
-    problems: AtomicU64,
+    /// Problems of which other ranks have parts: the rank, and their numbers here and there.
+    pairs: Mutex<Vec<(usize, u64, u64)>>,
     /// Tokens, with their ranks, that rank 0 no longer has.
     dropped: Mutex<Vec<(usize, u64)>>,
     traffic: Mutex<Traffic>,
@@ -97,7 +97,7 @@ impl Ranks {
             busy: AtomicBool::new(false),
             closed: AtomicBool::new(false),
             serial: AtomicU64::new(0),
-            problems: AtomicU64::new(0),
+            pairs: Mutex::default(),
             dropped: Mutex::default(),
             traffic: Mutex::default(),
         })
@@ -112,9 +112,14 @@ impl Ranks {
         *lock(&self.traffic)
     }
 
-    /// The number of a new problem on this stream.
-    pub fn next_problem(&self) -> u64 {
-        self.problems.fetch_add(1, Ordering::Relaxed)
+    /// On rank 0: another rank has given a part of a problem; these are its numbers here and there. False if this turns the order in which
+    /// the problems of both were created.
+    pub fn pair(&self, rank: usize, here: u64, there: u64) -> bool {
+        let mut pairs = lock(&self.pairs);
+        let of_rank = |(of, ..): &&(usize, u64, u64)| *of == rank;
+        let fits = pairs.iter().filter(of_rank).all(|(_, a, b)| (*a < here) == (*b < there));
+        pairs.extend(fits.then_some((rank, here, there)));
+        fits
     }
 
     /// The first of so many new names, which a rank will give.

@@ -311,8 +311,9 @@ impl<T: Wire> Wire for Result<T> {
 }
 
 /// The kinds of errors of another rank; one of any other kind is an internal error there.
-const KINDS: [Kind; 8] = [
+const KINDS: [Kind; 9] = [
     Kind::Internal,
+    Kind::State,
     Kind::Memory,
     Kind::NullSpace,
     Kind::Indefinite,

@@ -6,8 +6,9 @@ mod questions;
 
 pub use questions::taken;
 
+use std::collections::BTreeMap;
 use std::panic::{catch_unwind, AssertUnwindSafe};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use crate::body::{Bodies, ABOUT_BODIES};
@@ -15,31 +16,61 @@ use crate::error::{Error, Kind, Result};
 use crate::platform::interrupt::Interrupt;
 use crate::platform::shortage::RunningCall;
 use crate::platform::threads;
-use crate::ranks::{message, Incoming, Ranks, END};
+use crate::ranks::{message, Incoming, Ranks, Wire, END};
 
-/// The first request of a call that all ranks make.
+/// The first request of a call that all ranks make; it begins with the number of the problem. A rank that serves answers None.
 pub const BEGIN: u32 = 2;
 
-/// A rank other than 0 on a stream, and what it keeps for rank 0.
-#[derive(Clone)]
+/// This rank on a stream of messages, and what it keeps for rank 0.
 pub struct Rank {
     pub ranks: Arc<Ranks>,
-    pub bodies: Arc<Bodies>,
+    pub bodies: Bodies,
+    /// The problems to which it has given bodies: their numbers here, and on rank 0 once it has asked.
+    problems: Mutex<BTreeMap<u64, Option<u64>>>,
 }
 
 impl Rank {
-    pub fn new(ranks: Arc<Ranks>) -> Self {
-        Self { ranks, bodies: Arc::new(Bodies::new(taken)) }
+    pub fn new(ranks: Arc<Ranks>) -> Arc<Self> {
+        Arc::new(Self { ranks, bodies: Bodies::new(taken), problems: Mutex::default() })
+    }
+
+    /// A problem here, with its number on rank 0.
+    pub fn set_problem(&self, number: u64, there: Option<u64>) {
+        self.problems().insert(number, there);
+    }
+
+    pub fn drop_problem(&self, number: u64) {
+        self.problems().remove(&number);
+    }
+
+    /// Whether it serves a problem of rank 0, to which it has given nothing.
+    fn serves(&self, problem: u64) -> Result<()> {
+        if self.problems().values().all(|there| there.is_some_and(|there| there != problem)) {
+            return Ok(());
+        }
+        let rank = self.ranks.rank;
+        let what = format!("rank {rank} is in feti_serve, and has a part of a problem");
+        Err(Error::new(Kind::State, what))
+    }
+
+    fn problems(&self) -> MutexGuard<'_, BTreeMap<u64, Option<u64>>> {
+        self.problems.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// On ranks other than 0: answers rank 0, for all its problems, until rank 0 calls it too. `threads`: as option `threads`.
-pub fn serve(ranks: &Arc<Ranks>, threads: i64) -> Result<()> {
-    if ranks.rank == 0 {
-        return ranks.end();
+pub fn serve(rank: &Rank, threads: i64) -> Result<()> {
+    if rank.ranks.rank == 0 {
+        return rank.ranks.end();
     }
-    let (threads, bodies) = (threads::count(threads, usize::MAX), Bodies::new(taken));
-    answer_all(ranks, &bodies, &mut |incoming, bodies| answer(bodies, incoming, threads))
+    let threads = threads::count(threads, usize::MAX);
+    answer_all(&rank.ranks, &rank.bodies, &mut |incoming, bodies| match incoming.question {
+        BEGIN => {
+            rank.serves(u64::take(&mut &incoming.message[..])?)?;
+            Ok(message(&None::<()>))
+        }
+        _ => answer(bodies, incoming, threads),
+    })
 }
 
 /// Answers by this function until rank 0 ends it. A panic is an error of the request.
@@ -71,8 +102,6 @@ pub fn answer(bodies: &Bodies, incoming: &Incoming, threads: usize) -> Result<Ve
     };
     match incoming.question {
         ABOUT_BODIES => interrupt.during(|| bodies.answer(&incoming.message, threads)),
-        // this rank serves
-        BEGIN => Ok(message(&None::<()>)),
         _ => Err(Error::new(Kind::Internal, "a question that a rank does not know")),
     }
 }

@@ -6,14 +6,13 @@ use std::sync::Arc;
 use crate::decomposition::{Connected, Decomposition};
 use crate::gathering::{Order, Revised, Told};
 use crate::model::Revisions;
-use crate::ranks::Ranks;
 use crate::serving::Rank;
 use crate::solve::Answer;
 
 /// The part of this rank in a problem of several.
 pub struct Joined {
-    pub ranks: Arc<Ranks>,
-    /// Number of the problem on the stream: equal on all ranks.
+    pub rank: Arc<Rank>,
+    /// Number of the problem on this rank, in the order of creation.
     pub problem: u64,
     pub role: Role,
     /// The model of this rank to which its answer belongs.
@@ -37,6 +36,8 @@ pub struct Leader {
     pub shared: Vec<(usize, Vec<usize>)>,
     /// Ranks that serve, and have no part of the problem.
     pub serve: Vec<bool>,
+    /// Ranks whose problem is known.
+    pub paired: Vec<bool>,
     pub states: BTreeMap<usize, SavedByAll>,
     /// The order to which a restored answer belongs.
     pub expected: Option<Arc<Order>>,
@@ -50,7 +51,9 @@ pub struct SavedByAll {
 
 /// What another rank keeps for its part.
 pub struct Follower {
-    pub rank: Rank,
+    pub rank: Arc<Rank>,
+    /// Number of the problem on rank 0, once known.
+    pub leads: Option<u64>,
     pub connected: Connected,
     /// The parts of its bodies.
     pub parts: Option<Decomposition>,
@@ -59,7 +62,13 @@ pub struct Follower {
 }
 
 impl Follower {
-    pub fn new(rank: Rank) -> Self {
-        Self { rank, connected: Connected::default(), parts: None, numbers: None }
+    pub fn new(rank: Arc<Rank>) -> Self {
+        Self { rank, leads: None, connected: Connected::default(), parts: None, numbers: None }
+    }
+}
+
+impl Drop for Joined {
+    fn drop(&mut self) {
+        self.rank.drop_problem(self.problem);
     }
 }

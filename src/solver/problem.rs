@@ -14,7 +14,7 @@ use crate::platform::interrupt::Clock;
 use crate::platform::memory::Headroom;
 use crate::platform::stopwatch;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
-use crate::ranks::{Ranks, Traffic};
+use crate::ranks::Traffic;
 use crate::setup::{Duals, Prepared, Work};
 use crate::solve::{solve_islands, Answer, DualMethod, Report};
 use crate::solver::decomposed::{answer_of_host, findings_of_host, of_host, same_bodies, solved};
@@ -198,15 +198,6 @@ impl Problem {
         self.method = Some(method);
     }
 
-    /// Bodies of this problem may be lent to the other ranks, which serve ([`serve`](crate::solver::serve)). Before the first body.
-    pub fn lend_to(&mut self, ranks: Arc<Ranks>) -> Result<()> {
-        if !self.model.bodies.is_empty() {
-            return Err(Error::new(Kind::State, "the ranks must be given before the first body"));
-        }
-        self.prepared.lending = Some(Lending::new(ranks, cfg!(feature = "loopback")));
-        Ok(())
-    }
-
     /// Processor seconds of the last setup or solve in which the thread of the call did neither work of bodies here nor wait; none without
     /// other ranks.
     pub fn seconds_leading(&self) -> Option<f64> {
@@ -218,7 +209,7 @@ impl Problem {
 
     /// What has been exchanged with other ranks, by all problems that share their stream of messages.
     pub fn traffic(&self) -> Traffic {
-        let joined = self.joined.as_ref().map(|joined| joined.ranks.traffic());
+        let joined = self.joined.as_ref().map(|joined| joined.rank.ranks.traffic());
         joined.or_else(|| self.prepared.lending.as_ref().map(Lending::traffic)).unwrap_or_default()
     }
 

@@ -201,14 +201,12 @@ fn nothing(deck: &Deck) -> Bits {
 fn solved(deck: &Deck, hands: &[Hand], motions: Motions) -> Vec<Bits> {
     let (leader, others) = linked(hands.len());
     let run = |ranks: Arc<Ranks>| {
-        let (number, mut problem) = (ranks.rank, Problem::new());
+        let (number, rank, mut problem) = (ranks.rank, Rank::new(ranks), Problem::new());
         if hands[number].serves {
-            serve(&ranks, 1).unwrap();
+            serve(&rank, 1).unwrap();
             return Vec::new();
         }
-        let stream = Arc::clone(&ranks);
-        let rank = (number > 0).then(|| Rank::new(Arc::clone(&ranks)));
-        problem.join(ranks, rank).unwrap();
+        problem.join(Arc::clone(&rank)).unwrap();
         give(&mut problem, deck, &hands[number], motions);
         let (hand, mut ends) = (&hands[number], Vec::new());
         let mut end = |problem: &mut Problem, ended: &Result<Report>| {
@@ -242,7 +240,7 @@ fn solved(deck: &Deck, hands: &[Hand], motions: Motions) -> Vec<Bits> {
         let fourth = problem.solve();
         end(&mut problem, &fourth);
         drop(problem);
-        serve(&stream, 1).unwrap();
+        serve(&rank, 1).unwrap();
         ends
     };
     let mut all = std::thread::scope(|scope| {

@@ -79,6 +79,7 @@ fn detail(record: Option<&Record>) -> feti_error_detail {
         function,
         element: known(place.element),
         node: known(place.node),
+        rank: known(place.rank),
     }
 }
 

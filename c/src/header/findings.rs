@@ -53,4 +53,6 @@ pub struct feti_findings {
     pub soft_body: i64,
     /// After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN.
     pub capacity: f64,
+    /// Rank that has given `body` or `row`, if several ranks have given some; -1: does not apply.
+    pub rank: i64,
 }

@@ -1,5 +1,6 @@
 //! What the header declares besides the functions.
 
+mod certificate;
 mod communicator;
 mod constants;
 mod findings;

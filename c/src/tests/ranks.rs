@@ -139,7 +139,8 @@ fn the_other_rank_serves_all_problems_until_rank_0_ends_it_and_every_table_is_re
         let problems = [Owned::new(), Owned::new()];
         problems.iter().for_each(|p| assert_eq!(set(p, &end.table(0)), FETI_OK));
         let (status, info) = info(&problems[1]);
-        assert_eq!((status, info.ranks, info.messages, info.seconds_waited), (FETI_STATE, 2, 0, 0.0));
+        // it asks the other rank whether it serves before it looks at what it has
+        assert_eq!((status, info.ranks, info.messages), (FETI_STATE, 2, 2));
         assert_eq!(serve(&end.table(0)), FETI_OK);
         assert_eq!(end.released.load(Relaxed), 0);
         drop(problems);
@@ -203,19 +204,107 @@ fn with_one_rank_nothing_changes_but_the_call_is_checked() {
 }
 
 #[test]
-fn only_rank_0_lends_and_its_streams_have_one_number_of_ranks() {
+fn a_stream_has_one_number_of_ranks_and_one_rank() {
     let [end, _] = End::pair(None);
     let p = Owned::new();
-    assert_eq!(set(&p, &end.table(1)), FETI_UNSUPPORTED);
-    assert!(last_error().contains("rank 1") && last_error().contains("feti_serve"), "{}", last_error());
     assert_eq!(set(&p, &end.table(0)), FETI_OK);
     assert_eq!(set(&Owned::with_body(), &end.table(0)), FETI_STATE);
     let more = feti_communicator { size: 3, ..end.table(0) };
-    assert_eq!(set(&Owned::new(), &more), FETI_ARGUMENT - 2);
-    assert!(last_error().contains("for 2 ranks"), "{}", last_error());
+    for other in [more, end.table(1)] {
+        assert_eq!(set(&Owned::new(), &other), FETI_ARGUMENT - 2);
+        assert!(last_error().contains("for rank 0 of 2"), "{}", last_error());
+    }
     drop(p);
     assert_eq!(end.released.load(Relaxed), 1);
     assert_eq!(set(&Owned::new(), &more), FETI_OK);
+}
+
+/// A spring of stiffness 2 from the ground, pushed by f; its unknown has the number of its rank.
+fn add_spring(p: &Owned, rank: i64, f: f64) {
+    let (mut body, k) = (0, 2.0);
+    // SAFETY: all arrays have one number.
+    let statuses = unsafe {
+        [
+            feti_body_add(p.0, 1, &mut body),
+            feti_body_stiffness_dense(p.0, body, 1, &k, 1, FETI_FULL, FETI_COPY),
+            feti_body_load(p.0, body, 1, &f),
+            feti_body_numbering_i64(p.0, body, 1, &rank, 0),
+        ]
+    };
+    assert_eq!(statuses, [FETI_OK; 4]);
+}
+
+/// A row between two numbers: u of the first stays below that of the second.
+fn add_row(p: &Owned, numbers: &[i64; 2]) -> i32 {
+    let (ptr, val, gap) = ([0, 2], [1.0, -1.0], 0.0);
+    let (ptr, dof, val) = (ptr.as_ptr(), numbers.as_ptr(), val.as_ptr());
+    // SAFETY: one row of two entries.
+    unsafe {
+        feti_rows_add_i64(p.0, FETI_INEQUALITY, 1, ptr, std::ptr::null(), dof, val, 0, &gap, null_mut())
+    }
+}
+
+/// Runs the same on both ranks of a pair.
+fn both(host: impl Fn(i32, &feti_communicator) + Sync) {
+    let [leader, other] = End::pair(None);
+    let host = &host;
+    std::thread::scope(|scope| {
+        let second = scope.spawn(move || host(1, &other.table(1)));
+        host(0, &leader.table(0));
+        second.join().unwrap();
+    });
+}
+
+#[test]
+fn two_ranks_give_a_spring_each_and_rank_1_the_row_between_them() {
+    both(|rank, table| {
+        let p = Owned::new();
+        assert_eq!(set(&p, table), FETI_OK);
+        // alone they would be at 2 and -1
+        add_spring(&p, i64::from(rank), if rank == 0 { 4.0 } else { -2.0 });
+        if rank == 1 {
+            assert_eq!(add_row(&p, &[0, 1]), FETI_OK);
+        }
+        let (status, info) = info(&p);
+        assert_eq!((status, info.ranks, info.bodies, info.rows), (FETI_OK, 2, 2, 1));
+        let (mut u, mut lambda) = (0.0, [f64::NAN]);
+        // SAFETY: room for one number, and for the rows of this rank.
+        let read = unsafe { feti_displacement(p.0, 0, 1, &mut u) };
+        assert!(read == FETI_OK && (u - 0.5).abs() < 1e-14);
+        // SAFETY: as above.
+        let read = unsafe { feti_multipliers(p.0, FETI_INEQUALITY, i64::from(rank), lambda.as_mut_ptr()) };
+        assert_eq!(read, FETI_OK);
+        assert!((lambda[0] - 3.0).abs() < 1e-14 || rank == 0);
+    });
+}
+
+#[test]
+fn what_one_rank_gives_wrong_is_told_on_both_with_its_rank() {
+    both(|rank, table| {
+        let p = Owned::new();
+        assert_eq!(set(&p, table), FETI_OK);
+        add_spring(&p, i64::from(rank), 1.0);
+        if rank == 1 {
+            assert_eq!(add_row(&p, &[0, 7]), FETI_OK, "another rank may have the number");
+        }
+        assert_eq!(info(&p).0, FETI_ARGUMENT);
+        let detail = last_detail();
+        assert_eq!((detail.rank, detail.row, detail.entry, detail.value), (1, 0, 1, 7.0));
+        assert!(last_error().contains("rank 1, row 0"), "{}", last_error());
+    });
+}
+
+#[test]
+fn different_calls_end_with_the_same_status_on_both_ranks() {
+    both(|rank, table| {
+        let p = Owned::new();
+        assert_eq!(set(&p, table), FETI_OK);
+        add_spring(&p, i64::from(rank), 1.0);
+        let status = if rank == 0 { feti_setup(p.0) } else { info(&p).0 };
+        assert_eq!(status, FETI_STATE);
+        assert!(last_error().contains("rank 1 is in feti_solve, rank 0 in feti_setup"), "{}", last_error());
+        assert_eq!(info(&p).0, FETI_OK, "together they go on");
+    });
 }
 
 #[test]

@@ -36,7 +36,12 @@ impl Follower {
                 FINISH => {
                     self.numbers = None;
                     ranks.reply(&incoming, Ok(Vec::new()))?;
-                    return value(&incoming.message);
+                    let end: Finish = value(&incoming.message)?;
+                    if end.leads.is_some() {
+                        self.leads = end.leads;
+                        self.rank.set_problem(number, end.leads);
+                    }
+                    return Ok(end);
                 }
                 END => {
                     ranks.reply(&incoming, Ok(Vec::new()))?;
@@ -46,7 +51,10 @@ impl Follower {
                 }
                 question => {
                     let answered = match question {
-                        BEGIN => begun(problem, &incoming, number, (called, given.take())),
+                        BEGIN => {
+                            let mine = (number, self.leads);
+                            begun(problem, &incoming, mine, (called, given.take()))
+                        }
                         NUMBERS => self.section(&problem.model),
                         TOUCH => {
                             value(&incoming.message).and_then(|of| sent(self.touched(&problem.model, of)))
@@ -121,12 +129,20 @@ impl Follower {
 fn begun(
     problem: &mut Problem,
     incoming: &Incoming,
-    number: u64,
+    (number, leads): (u64, Option<u64>),
     (called, answer): (Called, Option<Given>),
 ) -> Result<Vec<u8>> {
     let Begin { known, .. } = value(&incoming.message)?;
-    let mut begun =
-        Begun { problem: number, called, refused: None, told: None, values: None, answer, fits: false };
+    let mut begun = Begun {
+        problem: number,
+        leads,
+        called,
+        refused: None,
+        told: None,
+        values: None,
+        answer,
+        fits: false,
+    };
     let is_new = known != Some(Revised::of(&problem.model));
     let told = match called.call {
         Call::RestoreState => problem.restorable(called.number as usize).map(|fits| begun.fits = fits),

@@ -30,12 +30,19 @@ impl Leading<'_> {
     /// Leads the call; the other ranks hear of its end whatever happens. None if no other rank has a part: the problem of rank 0 is that
     /// of all.
     pub fn lead(&mut self, problem: u64, called: Called, given: Option<Given>) -> Result<Option<Finish>> {
-        let begun = self.begin(problem, called)?;
-        self.members = begun.iter().map(|(rank, _)| *rank).collect();
-        if begun.is_empty() {
+        if self.ranks.is_closed() && self.leader.told.is_none() {
             return Ok(None);
         }
-        let ended = together(problem, called, &begun).and_then(|()| self.led(called, begun, given));
+        let (begun, refusal) = self.begin(problem, called)?;
+        self.members = begun.iter().map(|(rank, _)| *rank).collect();
+        if begun.is_empty() && refusal.is_none() {
+            return Ok(None);
+        }
+        let leads = self.pair(problem, &begun).then_some(problem);
+        let ended = match refusal {
+            None => together(leads, called, &begun).and_then(|()| self.led(called, begun, given)),
+            Some(error) => Err(error),
+        };
         let failed = |error: Error| {
             let failure = Some(Failure(error));
             (0..=self.members.len())
@@ -45,7 +52,7 @@ impl Leading<'_> {
         let mut ends: Vec<Finish> = ended.unwrap_or_else(failed);
         let own = ends.remove(0);
         let mut ends = ends.into_iter();
-        self.ask(FINISH, |_| ends.next().unwrap_or_default())?;
+        self.ask(FINISH, |_| Finish { leads, ..ends.next().unwrap_or_default() })?;
         Ok(Some(own))
     }
 
@@ -53,31 +60,53 @@ impl Leading<'_> {
     pub(super) fn ask<T: Wire + 'static>(
         &self,
         question: u32,
-        mut of: impl FnMut(usize) -> T,
+        of: impl FnMut(usize) -> T,
     ) -> Result<Vec<(usize, Vec<u8>)>> {
+        let answers = self.asked(question, of)?.into_iter();
+        answers.map(|(rank, answer)| Ok((rank, answer.map_err(|e| e.rank(rank))?))).collect()
+    }
+
+    fn asked<T: Wire + 'static>(
+        &self,
+        question: u32,
+        mut of: impl FnMut(usize) -> T,
+    ) -> Result<Vec<(usize, Result<Vec<u8>>)>> {
         let request = |&rank: &usize| {
             let of = of(rank);
             Request { rank, question, put: Box::new(move |to| of.put(to)) }
         };
         let answers = self.ranks.ask(self.members.iter().map(request).collect())?.answers()?;
-        let own = self.members.iter().zip(answers);
-        own.map(|(rank, answer)| Ok((*rank, answer.map_err(|e| e.rank(*rank))?))).collect()
+        Ok(self.members.iter().copied().zip(answers).collect())
     }
 
-    /// Which calls the other ranks are in; without those that serve.
-    fn begin(&mut self, problem: u64, called: Called) -> Result<Vec<(usize, Begun)>> {
+    /// Which calls the other ranks are in, without those that serve; and why one cannot take part.
+    fn begin(&mut self, problem: u64, called: Called) -> Result<(Vec<(usize, Begun)>, Option<Error>)> {
         self.leader.serve.resize(self.ranks.size, false);
         self.members = (1..self.ranks.size).filter(|rank| !self.leader.serve[*rank]).collect();
         let known = |rank: usize| self.leader.told.as_ref().map(|told| told[rank].revisions);
-        let answers = self.ask(BEGIN, |rank| Begin { problem, called, known: known(rank) })?;
-        let mut begun = Vec::with_capacity(answers.len());
+        let answers = self.asked(BEGIN, |rank| Begin { problem, called, known: known(rank) })?;
+        let (mut begun, mut refusal) = (Vec::with_capacity(answers.len()), None);
         for (rank, answer) in answers {
-            match value::<Option<Begun>>(&answer)? {
-                Some(of) => begun.push((rank, of)),
-                None => self.leader.serve[rank] = true,
+            match answer.and_then(|answer| value::<Option<Begun>>(&answer)) {
+                Ok(Some(of)) => begun.push((rank, of)),
+                Ok(None) => self.leader.serve[rank] = true,
+                Err(error) => drop(refusal.get_or_insert(error.rank(rank))),
             }
         }
-        Ok(begun)
+        Ok((begun, refusal))
+    }
+
+    /// Whether all ranks are in a call for the same problem: once met, they remain together.
+    fn pair(&mut self, problem: u64, begun: &[(usize, Begun)]) -> bool {
+        self.leader.paired.resize(self.ranks.size, false);
+        begun.iter().all(|(rank, of)| match (self.leader.paired[*rank], of.leads) {
+            (true, Some(leads)) => leads == problem,
+            (false, None) => {
+                self.leader.paired[*rank] = self.ranks.pair(*rank, problem, of.problem);
+                self.leader.paired[*rank]
+            }
+            _ => false,
+        })
     }
 
     /// What every rank gets, rank 0 first.
@@ -178,14 +207,14 @@ impl Leading<'_> {
 }
 
 /// Whether all ranks are in this call.
-fn together(problem: u64, called: Called, begun: &[(usize, Begun)]) -> Result<()> {
-    let is_other = |(_, of): &&(usize, Begun)| (of.problem, of.called) != (problem, called);
+fn together(leads: Option<u64>, called: Called, begun: &[(usize, Begun)]) -> Result<()> {
+    let is_other = |(_, of): &&(usize, Begun)| leads.is_none() || of.called != called;
     let Some((rank, of)) = begun.iter().find(is_other) else { return Ok(()) };
     let name = |called: Called| match called.number {
         0 => called.call.name().to_owned(),
         number => format!("{} with number {number}", called.call.name()),
     };
-    let another = if of.problem == problem { "" } else { " for another problem" };
+    let another = if leads.is_some() { "" } else { " for another problem" };
     let what = format!("rank {rank} is in {}{another}, rank 0 in {}", name(of.called), name(called));
     Err(Error::new(Kind::State, what))
 }

@@ -55,6 +55,7 @@ impl Call {
 
 /// Which call rank 0 is in, and what it knows of the part of this rank.
 pub struct Begin {
+    /// Its number on rank 0.
     pub problem: u64,
     pub called: Called,
     pub known: Option<Revised>,
@@ -62,7 +63,9 @@ pub struct Begin {
 
 /// Which call this rank is in, and what rank 0 does not know of its part.
 pub struct Begun {
+    /// The number of its problem here, and on rank 0 once known.
     pub problem: u64,
+    pub leads: Option<u64>,
     pub called: Called,
     pub refused: Option<Failure>,
     pub told: Option<Told>,
@@ -110,6 +113,8 @@ pub struct PartTold {
 /// The end of a call.
 #[derive(Default)]
 pub struct Finish {
+    /// The number of the problem on rank 0; none if it is not this one.
+    pub leads: Option<u64>,
     pub failure: Option<Failure>,
     pub share: Option<Share>,
     /// Of a check.
@@ -125,11 +130,11 @@ pub struct Finish {
 wire_enum!(Call { Setup, Solve, Check, SaveState, RestoreState, OpenMotion, Dependent, Write, Read });
 wire_struct!(Called { call, number });
 wire_struct!(Begin { problem, called, known });
-wire_struct!(Begun { problem, called, refused, told, values, answer, fits });
+wire_struct!(Begun { problem, leads, called, refused, told, values, answer, fits });
 wire_struct!(Given { u, left, forces });
 wire_struct!(Touch { numbers, first });
 wire_struct!(Touched { copies, bodies });
 wire_struct!(PartsTold { parts, loose });
 wire_struct!(PartTold { order, dofs, facts });
 wire_struct!(Facts { entries, largest, length, last_digit, keys });
-wire_struct!(Finish { failure, share, certificate, motion, rows, fits });
+wire_struct!(Finish { leads, failure, share, certificate, motion, rows, fits });

@@ -16,7 +16,6 @@ use crate::body::Lending;
 use crate::certificate::Certificate;
 use crate::error::{Error, Kind, Result};
 use crate::model::HostModel;
-use crate::ranks::Ranks;
 use crate::serving::Rank;
 use crate::solve::Report;
 use crate::solver::check::{left_over, Candidate};
@@ -29,19 +28,20 @@ use messages::{Call, Called, Finish, Given};
 
 impl Problem {
     /// This rank gives its part of the problem: bodies and rows, which rows of other ranks may name by numbers. On every rank that gives
-    /// some, before the first body; rank 0 has no `rank`. All ranks of the stream that do so number their problems alike.
-    pub fn join(&mut self, ranks: Arc<Ranks>, rank: Option<Rank>) -> Result<()> {
+    /// some, before the first body, in the same order for several problems.
+    pub fn join(&mut self, rank: Arc<Rank>) -> Result<()> {
         if !self.model.bodies.is_empty() {
             return Err(Error::new(Kind::State, "the ranks must be given before the first body"));
         }
-        let problem = ranks.next_problem();
-        let role = match rank {
-            None => Role::Leads(Box::<Leader>::default()),
-            Some(rank) => Role::Follows(Box::new(Follower::new(rank))),
+        let ranks = &rank.ranks;
+        let problem = ranks.block(1);
+        let role = match ranks.rank {
+            0 => Role::Leads(Box::<Leader>::default()),
+            _ => Role::Follows(Box::new(Follower::new(Arc::clone(&rank)))),
         };
         let lending = || {
             let may_lend = ranks.size > 1 && ranks.rank == 0;
-            may_lend.then(|| Lending::new(Arc::clone(&ranks), cfg!(feature = "loopback")))
+            may_lend.then(|| Lending::new(Arc::clone(ranks), cfg!(feature = "loopback")))
         };
         (self.prepared.lending, self.model.has_others) = (lending(), true);
         self.all = (ranks.rank == 0).then(|| {
@@ -49,7 +49,8 @@ impl Problem {
             all.prepared.lending = lending();
             all
         });
-        self.joined = Some(Box::new(Joined { ranks, problem, role, answered: None }));
+        rank.set_problem(problem, None);
+        self.joined = Some(Box::new(Joined { rank, problem, role, answered: None }));
         Ok(())
     }
 
@@ -129,17 +130,18 @@ impl Problem {
         called: Called,
         given: Option<Given>,
     ) -> Result<Option<Finish>> {
-        let Joined { ranks, problem, role, .. } = joined;
+        let Joined { rank, problem, role, .. } = joined;
+        let (ranks, problem) = (&rank.ranks, *problem);
         match role {
             Role::Leads(leader) => {
                 let missing = || Error::new(Kind::Internal, "rank 0 has no problem of all ranks");
                 let mut all = self.all.take().ok_or_else(missing)?;
                 let mut leading = Leading { ranks, leader, own: self, all: &mut all, members: Vec::new() };
-                let ended = leading.lead(*problem, called, given);
+                let ended = leading.lead(problem, called, given);
                 self.all = Some(all);
                 ended
             }
-            Role::Follows(follower) => follower.follow(self, ranks, *problem, (called, given)).map(Some),
+            Role::Follows(follower) => follower.follow(self, ranks, problem, (called, given)).map(Some),
         }
     }
 

@@ -10,8 +10,8 @@
 #define AT(bytes, member) _Static_assert(offsetof(TYPE, member) == (bytes), "offset of " #member);
 
 #define TYPE feti_error_detail
-SIZE(128) AT(0, struct_size) AT(8, status) AT(12, argument) AT(16, body) AT(48, entry) AT(56, value) AT(64, limit)
-AT(72, function) AT(112, element) AT(120, node)
+SIZE(136) AT(0, struct_size) AT(8, status) AT(12, argument) AT(16, body) AT(48, entry) AT(56, value) AT(64, limit)
+AT(72, function) AT(112, element) AT(120, node) AT(128, rank)
 #undef TYPE
 
 #define TYPE feti_option
@@ -33,9 +33,9 @@ SIZE(32) AT(0, struct_size) AT(8, bytes) AT(16, seconds) AT(24, name)
 #undef TYPE
 
 #define TYPE feti_certificate
-SIZE(184) AT(0, struct_size) AT(8, passed) AT(16, limit) AT(24, worst) AT(32, equilibrium) AT(80, duality_gap)
+SIZE(256) AT(0, struct_size) AT(8, passed) AT(16, limit) AT(24, worst) AT(32, equilibrium) AT(80, duality_gap)
 AT(88, equilibrium_body) AT(128, complementarity_row) AT(136, friction_cone) AT(160, friction_cone_node)
-AT(176, friction_stick_node)
+AT(176, friction_stick_node) AT(184, equilibrium_rank) AT(248, friction_stick_rank)
 #undef TYPE
 
 #define TYPE feti_progress
@@ -44,10 +44,10 @@ AT(72, seconds) AT(80, fraction)
 #undef TYPE
 
 #define TYPE feti_findings
-SIZE(192) AT(0, struct_size) AT(8, status) AT(12, kind) AT(16, body) AT(24, component) AT(32, dof) AT(40, row)
+SIZE(200) AT(0, struct_size) AT(8, status) AT(12, kind) AT(16, body) AT(24, component) AT(32, dof) AT(40, row)
 AT(48, rows_involved) AT(56, undetermined) AT(64, redundant_rows) AT(72, untouched_bodies) AT(80, untouched_body) AT(88, margin)
 AT(96, motion) AT(144, unheld) AT(152, doubtful_bodies) AT(160, doubtful_body) AT(168, soft_bodies) AT(176, soft_body)
-AT(184, capacity)
+AT(184, capacity) AT(192, rank)
 #undef TYPE
 
 #define TYPE feti_body_facts
@@ -66,12 +66,12 @@ struct layout {
 };
 
 static const struct layout in_c[] = {
-    {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, node)},
+    {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, rank)},
     {"feti_option", sizeof(feti_option), offsetof(feti_option, default_str)},
     {"feti_info", sizeof(feti_info), offsetof(feti_info, seconds_leading)},
-    {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, friction_stick_node)},
+    {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, friction_stick_rank)},
     {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
-    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, capacity)},
+    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, rank)},
     {"feti_phase", sizeof(feti_phase), offsetof(feti_phase, name)},
     {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, pieces)},
     {"feti_communicator", sizeof(feti_communicator), offsetof(feti_communicator, reserved)},

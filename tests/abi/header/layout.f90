@@ -19,12 +19,12 @@ subroutine layout_in_fortran(size, last) bind(C, name="layout_in_fortran")
 
   size = int([c_sizeof(detail), c_sizeof(option), c_sizeof(info), c_sizeof(certificate), &
     c_sizeof(progress), c_sizeof(findings), c_sizeof(phase), c_sizeof(facts), c_sizeof(communicator)], c_int64_t)
-  last = [distance(c_loc(detail), c_loc(detail%node)), &
+  last = [distance(c_loc(detail), c_loc(detail%rank)), &
     distance(c_loc(option), c_loc(option%default_str)), &
     distance(c_loc(info), c_loc(info%seconds_leading)), &
-    distance(c_loc(certificate), c_loc(certificate%friction_stick_node)), &
+    distance(c_loc(certificate), c_loc(certificate%friction_stick_rank)), &
     distance(c_loc(progress), c_loc(progress%fraction)), &
-    distance(c_loc(findings), c_loc(findings%capacity)), &
+    distance(c_loc(findings), c_loc(findings%rank)), &
     distance(c_loc(phase), c_loc(phase%name)), &
     distance(c_loc(facts), c_loc(facts%pieces)), &
     distance(c_loc(communicator), c_loc(communicator%reserved))]

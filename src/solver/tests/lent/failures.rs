@@ -6,7 +6,7 @@ use super::{bits, chains, serial, served, serving, solved, Served, N};
 use crate::error::{Error, Kind};
 use crate::ranks::loopback::{linked, linked_by};
 use crate::ranks::Link;
-use crate::solver::{Modes, Outcome, Problem};
+use crate::solver::{Modes, Outcome, Problem, Rank};
 
 /// Each request of a solve fails in each way, on each rank; the next solve is right.
 #[test]
@@ -143,5 +143,5 @@ fn a_problem_goes_on_alone_when_the_others_serve_no_longer() {
     let mut late = Problem::new();
     late.add_body(1).unwrap();
     let (leader, _others) = linked(2);
-    assert_eq!(late.lend_to(leader).unwrap_err().kind, Kind::State);
+    assert_eq!(late.join(Rank::new(leader)).unwrap_err().kind, Kind::State);
 }

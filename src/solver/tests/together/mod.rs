@@ -16,8 +16,7 @@ fn on_ranks<T: Send>(size: usize, host: impl Fn(usize, &mut Problem) -> T + Sync
     let (leader, others) = linked(size);
     let run = |ranks: Arc<Ranks>| {
         let (number, mut problem) = (ranks.rank, Problem::new());
-        let rank = (number > 0).then(|| Rank::new(Arc::clone(&ranks)));
-        problem.join(ranks, rank).unwrap();
+        problem.join(Rank::new(ranks)).unwrap();
         host(number, &mut problem)
     };
     std::thread::scope(|scope| {
