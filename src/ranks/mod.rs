@@ -112,13 +112,16 @@ impl Ranks {
         *lock(&self.traffic)
     }
 
-    /// On rank 0: another rank has given a part of a problem; these are its numbers here and there. False if this turns the order in which
-    /// the problems of both were created.
-    pub fn pair(&self, rank: usize, here: u64, there: u64) -> bool {
+    /// On rank 0: other ranks have given parts of a problem; these are their numbers here and there. False, and nothing is kept, if this
+    /// turns the order in which the problems of both were created.
+    pub fn pair(&self, here: u64, there: &[(usize, u64)]) -> bool {
         let mut pairs = lock(&self.pairs);
-        let of_rank = |(of, ..): &&(usize, u64, u64)| *of == rank;
-        let fits = pairs.iter().filter(of_rank).all(|(_, a, b)| (*a < here) == (*b < there));
-        pairs.extend(fits.then_some((rank, here, there)));
+        let suits = |(rank, number): &(usize, u64)| {
+            let of_rank = pairs.iter().filter(|(of, ..)| of == rank);
+            of_rank.into_iter().all(|(_, a, b)| (*a < here) == (b < number))
+        };
+        let fits = there.iter().all(suits);
+        pairs.extend(there.iter().filter(|_| fits).map(|(rank, number)| (*rank, here, *number)));
         fits
     }
 

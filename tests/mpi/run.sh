@@ -1,7 +1,7 @@
 #!/bin/sh
 # run.sh PREFIX ROOT WORK MPI...: with each MPI (openmpi, mpich, as Debian names their compilers) the installed sources for MPI are
-# compiled without a warning, as they are and with messages cut at 4096 bytes; example 15 in C and Fortran, a FORTRAN 77 host and hostile
-# hosts print on 2 and 4 ranks what they print on 1. The shared library needs no MPI. With LENDING, the prefix of a library that lends every
+# compiled without a warning, as they are and with messages cut at 4096 bytes; examples 15 to 17 in C and Fortran, a FORTRAN 77 host and
+# hostile hosts print on 2 and 4 ranks what they print on 1. The shared library needs no MPI. With LENDING, the prefix of a library that lends every
 # body, and PROBLEMS, a folder of problem files: also what it makes of these, bit by bit.
 set -eu
 prefix=$1 root=$2 work=$3
@@ -17,7 +17,7 @@ export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
 pkg() { pkg-config "$@" feti_contact; }
 shim="$(pkg --variable=mpi_sources)" folder="$(pkg --variable=mpidir)" face="$(pkg --variable=fortrandir)"
 link="$(pkg --libs) -Wl,-rpath,$(pkg --variable=libdir) -lm"
-c="$root/examples_c" fortran="$root/examples_fortran" example=15_serial_under_mpirun
+c="$root/examples_c" fortran="$root/examples_fortran" examples="15_serial_under_mpirun 16_body_per_rank 17_one_body_in_subdomains"
 
 # run MPI RANKS PROGRAM ARGUMENT...: ranks that wait leave their CPU to others; nothing is bound; as root, too.
 run() {
@@ -54,12 +54,17 @@ built() {
     shift
     strict="-O2 -Wall -Wextra -Werror"
     $cc -std=c99 -pedantic $strict "$@" $(pkg --cflags) -I"$folder" -c "$shim" -o shim.o
-    $cc -std=c99 $strict $(pkg --cflags) -I"$folder" -I"$c" "$c/$example.c" "$c/demo.c" shim.o -o example_c $link
+    for example in $examples; do
+        $cc -std=c99 $strict $(pkg --cflags) -I"$folder" -I"$c" "$c/$example.c" "$c/demo.c" shim.o -o "${example}_c" $link
+    done
     $cc -std=c99 $strict "$@" $(pkg --cflags) -I"$folder" "$root/tests/mpi/hostile.c" -o hostile $link -lpthread
     [ -z "${LENDING-}" ] || $cc -std=c99 $strict $(pkg --cflags) -I"$folder" "$root/tests/mpi/files.c" shim.o -o files -L"$LENDING/lib" \
         -Wl,-rpath,"$LENDING/lib" -lfeti_contact -lm
-    $fc -O2 -Wall -J. $(pkg --variable=fortransources) $(pkg --variable=mpi_fortran_sources) "$fortran/demo.f90" "$fortran/$example.f90" \
-        shim.o -o example_fortran $link
+    $fc -O2 -Wall -J. -c $(pkg --variable=fortransources) $(pkg --variable=mpi_f08_sources) "$fortran/demo.f90"
+    for example in $examples; do
+        $fc -O2 -Wall -J. "$fortran/$example.f90" feti_contact*.o demo.o shim.o -o "${example}_fortran" $link
+    done
+    rm feti_contact*.o
     $fc -O2 -J. -I"$face" -c $(pkg --variable=f77sources) $(pkg --variable=mpi_f77_sources)
     $fc -O2 -std=legacy -I"$face" "$root/tests/mpi/lends.f" feti_contact_*.o shim.o -o lends $link
 }
@@ -71,10 +76,10 @@ cmake_minimum_required(VERSION 3.22)
 project(host LANGUAGES C Fortran)
 find_package(feti_contact REQUIRED COMPONENTS C Fortran MPI)
 find_package(MPI REQUIRED COMPONENTS Fortran)
-add_executable(cmake_c "$c/$example.c" "$c/demo.c")
+add_executable(cmake_c "$c/16_body_per_rank.c" "$c/demo.c")
 target_link_libraries(cmake_c PRIVATE feti_contact::mpi m)
-add_executable(cmake_fortran "$fortran/demo.f90" "$fortran/$example.f90")
-target_link_libraries(cmake_fortran PRIVATE feti_contact::mpi_fortran MPI::MPI_Fortran)
+add_executable(cmake_fortran "$fortran/demo.f90" "$fortran/16_body_per_rank.f90")
+target_link_libraries(cmake_fortran PRIVATE feti_contact::mpi_f08 MPI::MPI_Fortran)
 END
     cmake -S . -B cmake -DCMAKE_PREFIX_PATH="$prefix" -DMPI_C_COMPILER="$(command -v "mpicc.$1")" \
         -DMPI_Fortran_COMPILER="$(command -v "mpifort.$1")" >cmake.log 2>&1 && cmake --build cmake >>cmake.log 2>&1 || { cat cmake.log; exit 1; }
@@ -92,10 +97,10 @@ for mpi in "$@"; do
         mkdir -p "$place"
         cd "$place"
         if [ "$chunk" = whole ]; then built "$mpi"; else built "$mpi" "-DFETI_MPI_CHUNK=$chunk"; fi
-        same "$mpi" ./example_c
-        for case in messages alive twice; do same "$mpi" ./hostile "$case"; done
+        for example in $examples; do same "$mpi" "./${example}_c"; done
+        for case in messages alive twice parts; do same "$mpi" ./hostile "$case"; done
         [ "$chunk" = whole ] || continue
-        same "$mpi" ./example_fortran
+        for example in $examples; do same "$mpi" "./${example}_fortran"; done
         same "$mpi" ./lends
         for case in single freed thread outside; do same "$mpi" ./hostile "$case"; done
         [ -z "${LENDING-}" ] || limit=600 same "$mpi" ./files "$PROBLEMS"/*.feti

@@ -99,14 +99,12 @@ impl Leading<'_> {
     /// Whether all ranks are in a call for the same problem: once met, they remain together.
     fn pair(&mut self, problem: u64, begun: &[(usize, Begun)]) -> bool {
         self.leader.paired.resize(self.ranks.size, false);
-        begun.iter().all(|(rank, of)| match (self.leader.paired[*rank], of.leads) {
-            (true, Some(leads)) => leads == problem,
-            (false, None) => {
-                self.leader.paired[*rank] = self.ranks.pair(*rank, problem, of.problem);
-                self.leader.paired[*rank]
-            }
-            _ => false,
-        })
+        let fits = |(rank, of): &(usize, Begun)| of.leads == self.leader.paired[*rank].then_some(problem);
+        let new: Vec<_> = begun.iter().filter(|(_, of)| of.leads.is_none()).collect();
+        let numbers: Vec<_> = new.iter().map(|(rank, of)| (*rank, of.problem)).collect();
+        let fits = begun.iter().all(fits) && self.ranks.pair(problem, &numbers);
+        new.iter().filter(|_| fits).for_each(|(rank, _)| self.leader.paired[*rank] = true);
+        fits
     }
 
     /// What every rank gets, rank 0 first.
