@@ -1028,6 +1028,8 @@ typedef struct feti_info {
 /**
  * Prepares the solve: null spaces, factors of the bodies, the dual operator.
  *
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set).
+ *
  * feti_solve calls this function when necessary; called alone, it finds errors in the bodies early.
  *
  * FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of a body
@@ -1042,6 +1044,9 @@ int32_t feti_setup(feti_problem *p);
 
 /**
  * Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
+ *
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set); status and
+ * `info` are those of all.
  *
  * The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and the other
  * functions for results. An answer exists if the status is not negative, unless the call was cancelled or
@@ -1355,6 +1360,9 @@ int32_t feti_friction_clear(feti_problem *p);
 /**
  * Saves loads, rows, friction, multipliers and the contact state under a number.
  *
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set), and get the
+ * same number.
+ *
  * For nodes with friction the state has the laws, the compliances and s_old. Factors are not copied and
  * the entries of the rows are shared, so a state costs no more memory than its vectors. A state exists
  * until it is dropped or the problem is destroyed; its number is never used again.
@@ -1365,6 +1373,9 @@ int32_t feti_state_save(feti_problem *p, int64_t *id);
 
 /**
  * Goes back to a saved state, for example after a rejected load step.
+ *
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set), with the
+ * same number.
  *
  * The call restores loads, rows with right-hand sides and compliances, and nodes with friction with laws
  * and s_old. It also restores the answer unless a matrix or the rows have changed since the state was
@@ -1503,6 +1514,9 @@ int32_t feti_diagnosis_rows(feti_problem *p, int32_t kind, int64_t cap, int64_t 
  * Lists the equality rows that are linear combinations of the other equality rows; this call computes
  * them.
  *
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set); each gets
+ * its own rows.
+ *
  * These rows add no constraint, and the distribution of forces among them is not unique.
  * feti_diagnosis_rows lists the rows that repeat another row. FETI_STATE before the first setup.
  *
@@ -1526,6 +1540,9 @@ int32_t feti_diagnosis_untouched(feti_problem *p, int64_t cap, int64_t *count, i
 /**
  * Reads a rigid body motion that the last answer leaves undetermined: the body and its motion.
  *
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set), with the
+ * same `k`; where another rank has the body, `body` is -1 and `motion` NaN.
+ *
  * `undetermined` of feti_findings is the number of these motions. Bodies that are not connected appear in
  * separate motions. FETI_STATE without an answer.
  *
@@ -1539,6 +1556,9 @@ int32_t feti_diagnosis_undetermined(feti_problem *p, int64_t k, int64_t *body, d
 /**
  * Reads the motion of every unknown of a body in a rigid body motion that the last answer leaves
  * undetermined.
+ *
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set), with the
+ * same `k`.
  *
  * The motion is scaled so that its largest entry over all bodies is 1; bodies that do not move have zeros.
  * FETI_STATE without an answer.
@@ -1893,6 +1913,9 @@ typedef struct feti_certificate {
  * Verifies an answer without tangential forces against the current problem; the answer may come from
  * another program.
  *
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set), each with
+ * the answer on its own.
+ *
  * Every entry belongs to the worst body or the worst row, measured against its own forces and deformation;
  * the certificate names this body or row. Glue (option glue) is judged like equality rows; its forces are
  * not an argument, and the library uses the glue forces that fit the answer best. Rows that never close, c
@@ -1915,6 +1938,9 @@ int32_t feti_check(feti_problem *p, int64_t n, const double *u, int64_t rows, co
 /**
  * Verifies an answer with tangential forces against the current problem; the answer may come from another
  * program.
+ *
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set), each with
+ * the answer on its own.
  *
  * The call works like feti_check. In addition, the entries of friction judge at every node the force
  * lambda_t against the friction law and the slip `T u - s_old - C_t lambda_t` with the current s_old,
@@ -2101,6 +2127,8 @@ int32_t feti_serve(const feti_communicator *by);
 /**
  * Writes all input of the problem to one file, for example for a bug report.
  *
+ * FETI_UNSUPPORTED if several ranks have a part of the problem.
+ *
  * The file has the bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and
  * numbers of the host, rows of both kinds with right-hand sides and compliances, and the options that
  * differ from their defaults, all bit by bit. It does not have the answer, start values, saved states and
@@ -2118,6 +2146,8 @@ int32_t feti_problem_write(feti_problem *p, const char *path);
 
 /**
  * Reads a file of feti_problem_write into an empty problem.
+ *
+ * FETI_UNSUPPORTED if several ranks have a part of the problem.
  *
  * A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or rows
  * already. Options get their values from the file and otherwise their defaults, except index_base, which

@@ -1,7 +1,7 @@
-!> FORTRAN 77 interface: lends bodies of a problem to other ranks of an MPI communicator. To be compiled with the host, like feti_mpi.c,
+!> FORTRAN 77 interface: a problem of the ranks of an MPI communicator. To be compiled with the host, like feti_mpi.c,
 !> after the other sources of the interface. See docs/fortran77.md.
 
-!> Rank 0 calls it for each problem, before the first body; the other ranks call FTMSRV.
+!> Each rank that has a part of the problem calls it, before the first body; those without call FTMSRV.
 recursive subroutine ftmpi(ip, icomm, ierr)
   use feti_contact_f77_base
   implicit none

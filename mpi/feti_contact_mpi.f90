@@ -1,6 +1,6 @@
-!> Lends bodies of a problem to other ranks of an MPI communicator; to be compiled with the host, like feti_mpi.c, after the modules of
-!> feti_contact. It needs no module of MPI: a communicator is an integer of `use mpi` or mpif.h, of 4 or 8 bytes, or the member
-!> MPI_VAL of one of mpi_f08. `stat` and `errmsg`: see feti_contact_base.
+!> A problem of the ranks of an MPI communicator; to be compiled with the host, like feti_mpi.c, after the modules of
+!> feti_contact. It needs no module of MPI: a communicator is an integer of `use mpi` or mpif.h, of 4 or 8 bytes
+!> (of mpi_f08: feti_contact_mpi_f08). `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_mpi
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_ptr
   use feti_contact_base, only: feti_problem, finish, handle_of
@@ -8,7 +8,7 @@ module feti_contact_mpi
   private
   public :: feti_mpi, feti_mpi_serve
 
-  !> Rank 0 calls it for each problem, before the first body; the other ranks call feti_mpi_serve.
+  !> Each rank that has a part of the problem calls it, before the first body; those without call feti_mpi_serve.
   !>
   !> call feti_mpi(p, comm)
   interface feti_mpi

@@ -1,4 +1,4 @@
-/* feti-contact for hosts with MPI: other ranks share the work of rank 0 (docs/machines.md). Compile feti_mpi.c with the host's own
+/* feti-contact for hosts with MPI: ranks that give bodies, and ranks that share the work of rank 0 (docs/machines.md). Compile feti_mpi.c with the host's own
    mpicc, and link it with the host; the library itself does not know MPI. */
 #ifndef FETI_CONTACT_MPI_H
 #define FETI_CONTACT_MPI_H
@@ -11,8 +11,8 @@
 extern "C" {
 #endif
 
-/** Lends bodies of the problem to the other ranks of comm: feti_communicator_set with the functions of MPI. Rank 0 calls it after
-    feti_problem_create. FETI_COMMUNICATION outside MPI_Init and MPI_Finalize, on a thread that may not call MPI, and if comm is not
+/** Makes the problem one of the ranks of comm: feti_communicator_set with the functions of MPI. Each rank that has a part of the problem
+    calls it after feti_problem_create; those without serve. FETI_COMMUNICATION outside MPI_Init and MPI_Finalize, on a thread that may not call MPI, and if comm is not
     a communicator of one group. */
 int32_t feti_mpi(feti_problem *p, MPI_Comm comm);
 

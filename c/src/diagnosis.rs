@@ -84,6 +84,8 @@ pub unsafe extern "C" fn feti_diagnosis_rows(
 
 /// Lists the equality rows that are linear combinations of the other equality rows; this call computes them.
 ///
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set); each gets its own rows.
+///
 /// These rows add no constraint, and the distribution of forces among them is not unique. feti_diagnosis_rows lists the
 /// rows that repeat another row. FETI_STATE before the first setup.
 ///
@@ -149,6 +151,9 @@ fn write_list(numbers: &[usize], (count, list): (Output<i64>, Output<i64>)) {
 
 /// Reads a rigid body motion that the last answer leaves undetermined: the body and its motion.
 ///
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set), with the same `k`; where another rank has
+/// the body, `body` is -1 and `motion` NaN.
+///
 /// `undetermined` of feti_findings is the number of these motions. Bodies that are not connected appear in separate
 /// motions. FETI_STATE without an answer.
 ///
@@ -180,6 +185,8 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined(
 }
 
 /// Reads the motion of every unknown of a body in a rigid body motion that the last answer leaves undetermined.
+///
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set), with the same `k`.
 ///
 /// The motion is scaled so that its largest entry over all bodies is 1; bodies that do not move have zeros. FETI_STATE
 /// without an answer.

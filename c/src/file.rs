@@ -7,6 +7,8 @@ use crate::header::types::feti_problem;
 
 /// Writes all input of the problem to one file, for example for a bug report.
 ///
+/// FETI_UNSUPPORTED if several ranks have a part of the problem.
+///
 /// The file has the bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the host,
 /// rows of both kinds with right-hand sides and compliances, and the options that differ from their defaults, all bit by
 /// bit. It does not have the answer, start values, saved states and functions of the host. docs/file_format.md describes
@@ -32,6 +34,8 @@ pub unsafe extern "C" fn feti_problem_write(p: *mut feti_problem, path: *const c
 }
 
 /// Reads a file of feti_problem_write into an empty problem.
+///
+/// FETI_UNSUPPORTED if several ranks have a part of the problem.
 ///
 /// A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or rows already. Options
 /// get their values from the file and otherwise their defaults, except index_base, which is unchanged. All data pass

@@ -10,6 +10,8 @@ use feti_contact::solver::{Candidate, Certificate, Entry, Problem, Report, Sizes
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.
 ///
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set).
+///
 /// feti_solve calls this function when necessary; called alone, it finds errors in the bodies early.
 ///
 /// FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of a body is not the one
@@ -31,6 +33,8 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 }
 
 /// Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
+///
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set); status and `info` are those of all.
 ///
 /// The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and the other functions
 /// for results. An answer exists if the status is not negative, unless the call was cancelled or ran out of time before
@@ -91,6 +95,8 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
 
 /// Verifies an answer without tangential forces against the current problem; the answer may come from another program.
 ///
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set), each with the answer on its own.
+///
 /// Every entry belongs to the worst body or the worst row, measured against its own forces and deformation; the
 /// certificate names this body or row. Glue (option glue) is judged like equality rows; its forces are not an argument,
 /// and the library uses the glue forces that fit the answer best. Rows that never close, c = +infinity, are left out,
@@ -134,6 +140,8 @@ pub unsafe extern "C" fn feti_check(
 }
 
 /// Verifies an answer with tangential forces against the current problem; the answer may come from another program.
+///
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set), each with the answer on its own.
 ///
 /// The call works like feti_check. In addition, the entries of friction judge at every node the force lambda_t against
 /// the friction law and the slip `T u - s_old - C_t lambda_t` with the current s_old, which after feti_friction_commit

@@ -38,6 +38,8 @@ pub unsafe extern "C" fn feti_start_from(
 
 /// Saves loads, rows, friction, multipliers and the contact state under a number.
 ///
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set), and get the same number.
+///
 /// For nodes with friction the state has the laws, the compliances and s_old. Factors are not copied and the entries of
 /// the rows are shared, so a state costs no more memory than its vectors. A state exists until it is dropped or the
 /// problem is destroyed; its number is never used again.
@@ -60,6 +62,8 @@ pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> 
 }
 
 /// Goes back to a saved state, for example after a rejected load step.
+///
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set), with the same number.
 ///
 /// The call restores loads, rows with right-hand sides and compliances, and nodes with friction with laws and s_old. It
 /// also restores the answer unless a matrix or the rows have changed since the state was saved. With option start =

@@ -34,7 +34,7 @@ pub fn of_host(host: &HostModel, parts: &Parts, mut error: Error) -> Error {
     error.proof = error.proof.map(|proof| Box::new(proof_of_host(parts, rows, *proof)));
     if let Some(Proof::Rows { heaviest, weights, .. }) = error.proof.as_deref() {
         let (kind, row) = kind_and_row(*heaviest, contact);
-        error.place.row = Some(row);
+        (error.place.row, error.place.kind) = (Some(row), Some(kind as usize));
         // the heaviest row of the host may be another one than that of the parts
         if weights.len() < all || weights.len() > 1 {
             let base = host.settings.index_base;
@@ -42,7 +42,7 @@ pub fn of_host(host: &HostModel, parts: &Parts, mut error: Error) -> Error {
             let mut others: Vec<_> = weights.iter().map(|(i, _)| *i).filter(|i| i != heaviest).collect();
             others.sort_unstable();
             let others: Vec<_> = others.into_iter().map(|i| kind_and_row(i, contact)).collect();
-            error.what = contradiction(kind, &others, base, &numbers);
+            error.what = contradiction(kind, &others, &|kind, row| host.row_name(kind, row), &numbers);
             error.place.index = glued.first().map(|number| *number as i64);
         }
     }

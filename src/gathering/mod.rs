@@ -132,6 +132,8 @@ pub fn gathered(
     model.contents.friction = friction(told, order, tangential)?;
     model.contents.revisions = revisions;
     model.joined = Some(places.joints());
+    let by = |kind: usize| order.rows[kind].iter().map(|at| (at.rank, at.number)).collect();
+    model.given_by = Some([by(0), by(1)]);
     Ok(model)
 }
 

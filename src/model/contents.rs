@@ -211,6 +211,11 @@ impl SolvedModel {
     }
 }
 
+/// A row by its number, from `base`.
+pub fn row_name(kind: RowKind, row: usize, base: i64) -> String {
+    format!("{} {}", kind.name(), row as i64 + base)
+}
+
 fn no_body(body: usize, bodies: usize) -> Error {
     Error::argument("body", format!("there are {bodies} bodies")).body(body).index(body as i64)
 }

@@ -136,11 +136,15 @@ pub fn proof_of_rows(margin: f64, mut weights: Vec<(usize, f64)>, heaviest: usiz
     Proof::Rows { margin, weights, heaviest }
 }
 
-/// The text of a proof: a row of this kind contradicts `others`, counted from `base`, and the glue of unknowns with these
-/// numbers.
-pub fn contradiction(kind: RowKind, others: &[(RowKind, usize)], base: i64, glued: &[i64]) -> String {
+/// The text of a proof: a row of this kind contradicts `others`, of these names, and the glue of unknowns with these numbers.
+pub fn contradiction(
+    kind: RowKind,
+    others: &[(RowKind, usize)],
+    name: &dyn Fn(RowKind, usize) -> String,
+    glued: &[i64],
+) -> String {
     let mut all = vec![format!("this {}", kind.name())];
-    let name = |(kind, row): &(RowKind, usize)| format!("{} {}", kind.name(), *row as i64 + base);
+    let name = |(kind, row): &(RowKind, usize)| name(*kind, *row);
     match others {
         [] if !glued.is_empty() => {}
         [other] if glued.is_empty() => all.push(name(other)),

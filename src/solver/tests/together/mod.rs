@@ -127,3 +127,30 @@ fn an_error_names_its_rank_on_all_ranks() {
     let places: Vec<_> = errors.iter().map(|e| (e.kind, e.place.rank, e.place.body)).collect();
     assert_eq!(places, [(Kind::State, Some(2), Some(1)); 3]);
 }
+
+/// Rank 1 and rank 2 hold the end of chain 0 at different places.
+#[test]
+fn rows_of_two_ranks_that_contradict_each_other_are_named_by_their_own_numbers() {
+    let ends = on_ranks(3, |rank, problem| {
+        add_chain(problem, rank);
+        let row = |problem: &mut Problem, number: i64, at: f64| {
+            let rows = RowsInput { ptr: &[0, 1], body: None, dof: &[number], val: &[1.0], rhs: Some(&[at]) };
+            problem.add_rows(RowKind::Equality, rows).unwrap();
+        };
+        if rank > 0 {
+            (0..rank as i64).for_each(|k| row(problem, 10 * rank as i64 + k, 0.0));
+            row(problem, 4, rank as f64);
+        }
+        let error = failed(problem);
+        let findings = problem.findings().unwrap();
+        let rows: Vec<_> = findings.rows(RowKind::Equality).collect();
+        (error, rows)
+    });
+    for (error, _) in &ends {
+        assert_eq!((error.kind, error.place.rank, error.place.row), (Kind::GapsContradict, Some(2), Some(2)));
+        assert!(error.what.contains("equality row 1 of rank 1"), "{error}");
+    }
+    let rows: Vec<_> = ends.into_iter().map(|(_, rows)| rows).collect();
+    assert!(rows[0].is_empty() && rows[1].len() == 1 && rows[2].len() == 1, "{rows:?}");
+    assert!((rows[1][0].0, rows[2][0].0) == (1, 2) && rows[1][0].1 * rows[2][0].1 < 0.0, "{rows:?}");
+}
