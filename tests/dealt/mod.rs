@@ -1,6 +1,8 @@
 //! Bodies, rows and nodes dealt out at random to ranks, which are threads here: the bits of one rank, and those of a problem that is given in
 //! the order of its numbers.
 
+mod glued;
+
 use std::sync::Arc;
 
 use decks::random::Random;
