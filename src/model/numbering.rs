@@ -174,7 +174,7 @@ impl HostModel {
     /// another rank may have, their numbers from `NAMED` on;
     /// none if the host has not given numbers.
     pub fn places_of(&self, ptr: &[usize], numbers: &[i64]) -> Result<Option<Vec<i64>>> {
-        if !self.is_numbered()? && !(self.has_others && self.bodies.is_empty()) {
+        if !(self.is_numbered()? || self.has_others && self.bodies.is_empty()) {
             return Ok(None);
         }
         let mut places = reserved(numbers.len(), "constraint rows")?;

@@ -1,7 +1,6 @@
 //! What precedes every message.
 
-use crate::error::Result;
-use crate::ranks::wire::{wire_struct, Wire};
+use crate::ranks::wire::wire_struct;
 
 /// 64 bytes before every message.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +19,9 @@ pub struct Frame {
     pub bytes: u64,
     /// Time left for the answer, infinite without limit.
     pub seconds_left: f64,
-    pub reserved: [u64; 3],
+    /// Of an answer: 1 if the host has cancelled the call on its rank.
+    pub cancelled: u64,
+    pub reserved: (u64, u64),
 }
 
 pub const FRAME: usize = 64;
@@ -28,22 +29,13 @@ pub const FRAME: usize = 64;
 /// "FETI"
 const MAGIC: u32 = 0x4954_4546;
 
-wire_struct!(Frame { magic, build, serial, question, failed, bytes, seconds_left, reserved });
-
-impl Wire for [u64; 3] {
-    fn put(&self, to: &mut Vec<u8>) {
-        self.iter().for_each(|v| v.put(to));
-    }
-
-    fn take(from: &mut &[u8]) -> Result<Self> {
-        Ok([u64::take(from)?, u64::take(from)?, u64::take(from)?])
-    }
-}
+wire_struct!(Frame { magic, build, serial, question, failed, bytes, seconds_left, cancelled, reserved });
 
 impl Frame {
     pub fn new(serial: u64, question: u32, failed: bool, bytes: usize, seconds_left: f64) -> Self {
         let (failed, bytes) = (u32::from(failed), bytes as u64);
-        Self { magic: MAGIC, build: build(), serial, question, failed, bytes, seconds_left, reserved: [0; 3] }
+        let (magic, build, cancelled, reserved) = (MAGIC, build(), 0, (0, 0));
+        Self { magic, build, serial, question, failed, bytes, seconds_left, cancelled, reserved }
     }
 
     /// The sender is the same build of this library.

@@ -48,6 +48,8 @@ pub struct Ranks {
     serial: AtomicU64,
     /// Problems of which other ranks have parts: the rank, and their numbers here and there.
     pairs: Mutex<Vec<(usize, u64, u64)>>,
+    /// Set if the host cancels the call that all ranks make: on rank 0 also by an answer of another.
+    cancel: Mutex<Option<Arc<AtomicBool>>>,
     /// Tokens, with their ranks, that rank 0 no longer has.
     dropped: Mutex<Vec<(usize, u64)>>,
     traffic: Mutex<Traffic>,
@@ -98,6 +100,7 @@ impl Ranks {
             closed: AtomicBool::new(false),
             serial: AtomicU64::new(0),
             pairs: Mutex::default(),
+            cancel: Mutex::default(),
             dropped: Mutex::default(),
             traffic: Mutex::default(),
         })
@@ -138,6 +141,15 @@ impl Ranks {
     /// A new name for something that a rank will keep.
     pub fn token(self: &Arc<Self>, rank: usize) -> Token {
         Token { ranks: Arc::clone(self), rank, number: self.serial.fetch_add(1, Ordering::Relaxed) }
+    }
+
+    /// While all ranks make a call, this flag cancels it.
+    pub fn cancel_by(&self, flag: Option<Arc<AtomicBool>>) {
+        *lock(&self.cancel) = flag;
+    }
+
+    fn is_cancelled(&self) -> bool {
+        lock(&self.cancel).as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// Sends these requests, at most one to each rank, in the order of the ranks. Dropping the result receives the answers, so that no
@@ -199,6 +211,7 @@ impl Ranks {
         let failed = answer.is_err();
         let message = answer.unwrap_or_else(|error| wire::message(&error));
         let frame = Frame::new(incoming.serial, incoming.question, failed, message.len(), f64::INFINITY);
+        let frame = Frame { cancelled: u64::from(self.is_cancelled()), ..frame };
         let is_sent = self.send(0, &wire::message(&frame), &message);
         if self.link.flush() && is_sent {
             Ok(())
@@ -303,6 +316,9 @@ impl Asked {
         if frame.serial != serial {
             self.ranks.closed.store(true, Ordering::Relaxed);
             return Err(damaged());
+        }
+        if frame.cancelled != 0 {
+            lock(&self.ranks.cancel).iter().for_each(|flag| flag.store(true, Ordering::Relaxed));
         }
         Ok(if frame.failed == 0 { Ok(message) } else { Err(value::<Error>(&message)?) })
     }

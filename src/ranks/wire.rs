@@ -234,16 +234,22 @@ impl<T: Wire> Wire for Option<T> {
     }
 }
 
-/// Three numbers of a place.
-impl Wire for [f64; 3] {
-    fn put(&self, to: &mut Vec<u8>) {
-        f64::put_each(self, to);
-    }
+/// Three numbers, as of a place.
+macro_rules! wire_triples {
+    ($($number:ty),+) => {$(
+        impl Wire for [$number; 3] {
+            fn put(&self, to: &mut Vec<u8>) {
+                <$number>::put_each(self, to);
+            }
 
-    fn take(from: &mut &[u8]) -> Result<Self> {
-        Ok([f64::take(from)?, f64::take(from)?, f64::take(from)?])
-    }
+            fn take(from: &mut &[u8]) -> Result<Self> {
+                Ok([<$number>::take(from)?, <$number>::take(from)?, <$number>::take(from)?])
+            }
+        }
+    )+};
 }
+
+wire_triples!(f64, u64);
 
 impl<T: Wire> Wire for Box<T> {
     fn put(&self, to: &mut Vec<u8>) {

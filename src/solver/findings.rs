@@ -92,9 +92,9 @@ impl Findings {
     }
 
     /// The motion of a proof on its body, if this rank has it.
-    pub fn own_motion(&self, host: &HostModel) -> Option<[f64; 6]> {
+    pub fn own_motion(&self, host: &HostModel, rank: usize) -> Option<[f64; 6]> {
         let Some(Proof::Motion { v, .. }) = &self.proof else { return None };
-        rigid_motion(host, self.place.body?, v)
+        rigid_motion(host, self.place.body.filter(|_| self.place.rank == Some(rank))?, v)
     }
 
     /// How clearly the problem has no solution.

@@ -16,9 +16,15 @@ impl Problem {
     /// The parts of a body and their K+, after a setup; a body that is cut is refused.
     fn set_up_parts(&mut self, body: usize) -> Result<Vec<(usize, &Inverse)>> {
         self.check_whole_body(body)?;
-        self.setup()?;
-        self.check_alone()?;
+        self.set_up_alone()?;
         Ok(self.parts_of(body).zip(self.inverses(body)).collect())
+    }
+
+    /// Sets up what only a rank that has the whole problem can give.
+    fn set_up_alone(&mut self) -> Result<()> {
+        self.check_alone()?;
+        self.setup()?;
+        self.check_alone()
     }
 
     /// Unknown i of a part within its body.
@@ -31,8 +37,7 @@ impl Problem {
     pub fn null_space(&mut self, body: usize) -> Result<(usize, Cow<'_, [f64]>)> {
         let order = self.model.order(body)?;
         if self.model.bodies[body].body.assembled().is_some() {
-            self.setup()?;
-            self.check_alone()?;
+            self.set_up_alone()?;
             let basis = self.parts().and_then(|parts| null_space_of(&self.prepared, parts, body));
             let missing = || Error::new(Kind::Internal, "the setup left a body without null space");
             return basis.map(|basis| (basis.cols, Cow::from(&basis.data))).ok_or_else(missing);
@@ -102,8 +107,7 @@ impl Problem {
         self.check_rows(x.len())?;
         self.check_rows(y.len())?;
         self.check_nothing_cut()?;
-        self.setup()?;
-        self.check_alone()?;
+        self.set_up_alone()?;
         let compliance = self.model.contact.compliance.iter().chain(&*self.model.equalities.compliance);
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
         let contact = self.model.contact.len();
@@ -123,8 +127,7 @@ impl Problem {
     pub fn dual_rhs(&mut self, d: &mut [f64]) -> Result<()> {
         self.check_rows(d.len())?;
         self.check_nothing_cut()?;
-        self.setup()?;
-        self.check_alone()?;
+        self.set_up_alone()?;
         let gaps = self.model.contact.rhs.iter().chain(&self.model.equalities.rhs);
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
         let contact = self.model.contact.len();

@@ -40,6 +40,8 @@ struct Bits {
     forces: [Vec<Vec<u64>>; 3],
     gaps: Vec<Vec<u64>>,
     states: Vec<String>,
+    /// Weights of contact and equality rows in a contradiction, or factors of rows that repeat others.
+    weights: [Vec<Vec<u64>>; 2],
 }
 
 fn bits(values: &[f64]) -> Vec<u64> {
@@ -125,6 +127,14 @@ fn give(problem: &mut Problem, deck: &Deck, hand: &Hand, motions: Motions) {
     }
 }
 
+/// A text without what it says in brackets, where rows have the numbers of their ranks.
+fn without_numbers(text: &str) -> String {
+    match (text.find('('), text.find(')')) {
+        (Some(begin), Some(end)) if begin < end => format!("{}{}", &text[..begin], &text[end..]),
+        _ => text.split(" and ").next().unwrap_or_default().to_owned(),
+    }
+}
+
 /// Takes in what a rank has got.
 fn take(
     problem: &mut Problem,
@@ -151,9 +161,20 @@ fn take(
                 _ => body,
             });
             let named = error.place.rank.is_none_or(|of| of == rank);
-            format!("{:?} {} {:?} {:?}", error.kind, error.what, error.place.value, body.filter(|_| named))
+            format!(
+                "{:?} {} {:?} {:?}",
+                error.kind,
+                without_numbers(&error.what),
+                error.place.value,
+                body.filter(|_| named)
+            )
         }
     };
+    for kind in [RowKind::Inequality, RowKind::Equality] {
+        for (row, weight) in problem.findings().iter().flat_map(|of| of.rows(kind)) {
+            all.weights[kind as usize][hand.rows[kind as usize][row]] = bits(&[weight]);
+        }
+    }
     let Ok(u) = problem.displacements().map(<[f64]>::to_vec) else { return };
     let mut at = 0;
     for (body, p) in hand.bodies.iter().enumerate() {
@@ -193,6 +214,7 @@ fn nothing(deck: &Deck) -> Bits {
         told: String::new(),
         u: bodies.clone(),
         reactions: bodies,
+        weights: [contact.clone(), equalities.clone()],
         gaps: contact.clone(),
         states: vec![String::new(); contact.len()],
         forces: [contact, equalities, vec![Vec::new(); deck.friction.normal.len()]],
@@ -276,6 +298,7 @@ impl Bits {
         fill(&mut self.u, other.u);
         fill(&mut self.reactions, other.reactions);
         self.forces.iter_mut().zip(other.forces).for_each(|(to, from)| fill(to, from));
+        self.weights.iter_mut().zip(other.weights).for_each(|(to, from)| fill(to, from));
         fill(&mut self.gaps, other.gaps);
         fill(&mut self.states, other.states);
     }
@@ -333,10 +356,12 @@ fn without_order_of_equal_rows(deck: &Deck, bits: &mut Bits) {
         for i in 0..rows.rhs.len() {
             for j in (0..i).filter(|j| same(i, *j)) {
                 let of = |bits: &Bits, i: usize| {
-                    (bits.forces[kind][i].clone(), (kind == 0).then(|| bits.states[i].clone()))
+                    let state = (kind == 0).then(|| bits.states[i].clone());
+                    (bits.forces[kind][i].clone(), state, bits.weights[kind][i].clone())
                 };
                 if of(bits, i) < of(bits, j) {
                     bits.forces[kind].swap(i, j);
+                    bits.weights[kind].swap(i, j);
                     if kind == 0 {
                         bits.states.swap(i, j);
                     }

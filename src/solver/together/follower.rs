@@ -1,5 +1,6 @@
 //! A rank other than 0 in a call that all ranks make.
 
+use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::Arc;
 
 use crate::body::Facts;
@@ -12,12 +13,12 @@ use crate::ranks::{message, value, Incoming, Ranks, Wire, END};
 use crate::serving::answer;
 use crate::solver::joined::Follower;
 use crate::solver::problem::Problem;
-use crate::solver::together::check_part;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::messages::{
     Begin, Begun, Call, Called, Finish, Given, PartTold, PartsTold, Touch, Touched, BEGIN, FINISH, LOADS,
     NUMBERS, TOUCH,
 };
+use crate::solver::together::{check_part, panicked};
 
 impl Follower {
     /// Answers until the call ends.
@@ -50,11 +51,9 @@ impl Follower {
                     return Err(Error::new(Kind::State, what));
                 }
                 question => {
-                    let answered = match question {
-                        BEGIN => {
-                            let mine = (number, self.leads);
-                            begun(problem, &incoming, mine, (called, given.take()))
-                        }
+                    let mine = (number, self.leads);
+                    let answered = catch_unwind(AssertUnwindSafe(|| match question {
+                        BEGIN => begun(problem, &incoming, mine, (called, given.take())),
                         NUMBERS => self.section(&problem.model),
                         TOUCH => {
                             value(&incoming.message).and_then(|of| sent(self.touched(&problem.model, of)))
@@ -63,7 +62,8 @@ impl Follower {
                             value(&incoming.message).and_then(|first| sent(self.loads(&problem.model, first)))
                         }
                         _ => answer(&self.rank.bodies, &incoming, threads),
-                    };
+                    }));
+                    let answered = answered.unwrap_or_else(|_| Err(panicked(ranks.rank)));
                     ranks.reply(&incoming, answered)?;
                 }
             }

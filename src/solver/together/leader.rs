@@ -1,6 +1,7 @@
 //! Rank 0 in a call that all ranks make.
 
 use std::collections::HashMap;
+use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
@@ -10,9 +11,9 @@ use crate::solver::check::Candidate;
 use crate::solver::joined::Leader;
 use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
-use crate::solver::together::for_one_rank;
 use crate::solver::together::messages::{Begin, Begun, Call, Called, Finish, Given, BEGIN, FINISH};
 use crate::solver::together::split::Split;
+use crate::solver::together::{for_one_rank, panicked};
 
 /// A call of all ranks, led by rank 0.
 pub(super) struct Leading<'a> {
@@ -40,7 +41,11 @@ impl Leading<'_> {
         }
         let leads = self.pair(problem, &begun).then_some(problem);
         let ended = match refusal {
-            None => together(leads, called, &begun).and_then(|()| self.led(called, begun, given)),
+            None => together(leads, called, &begun).and_then(|()| {
+                // the others hear of a panic, too
+                catch_unwind(AssertUnwindSafe(|| self.led(called, begun, given)))
+                    .unwrap_or_else(|_| Err(panicked(0)))
+            }),
             Some(error) => Err(error),
         };
         let failed = |error: Error| {
@@ -121,6 +126,10 @@ impl Leading<'_> {
         match called.call {
             Call::Setup | Call::Solve => self.solved(called.call, begun),
             Call::Check => self.checked(begun, given),
+            Call::OpenMotion | Call::Dependent if !self.is_as_told(&begun) => {
+                let what = "what has been asked belongs to the last answer, and the problem has changed: solve first";
+                Err(Error::new(Kind::State, what))
+            }
             Call::OpenMotion => self.open_motion(called.number as usize),
             Call::Dependent => self.dependent(),
             Call::Write | Call::Read => Err(for_one_rank()),
@@ -198,9 +207,14 @@ impl Leading<'_> {
             return Err(failure.0.rank(rank));
         }
         let own = self.own.restorable(number).map_err(|e| e.rank(0))?;
+        Ok(own && self.is_as_told(begun) && begun.iter().all(|(_, of)| of.fits))
+    }
+
+    /// Bodies and rows of all ranks are those of the last setup.
+    fn is_as_told(&self, begun: &[(usize, Begun)]) -> bool {
         let told = self.leader.told.as_ref();
         let same = told.is_some_and(|told| told[0].revisions == Revised::of(&self.own.model));
-        Ok(own && same && begun.iter().all(|(_, of)| of.fits && of.told.is_none()))
+        same && begun.iter().all(|(_, of)| of.told.is_none())
     }
 }
 

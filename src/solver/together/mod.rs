@@ -10,12 +10,14 @@ mod share;
 mod split;
 mod states;
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use crate::body::Lending;
 use crate::certificate::Certificate;
 use crate::error::{Error, Kind, Result};
 use crate::model::HostModel;
+use crate::ranks::Ranks;
 use crate::serving::Rank;
 use crate::solve::Report;
 use crate::solver::check::{left_over, Candidate};
@@ -80,7 +82,7 @@ impl Problem {
     pub(super) fn solve_together(&mut self) -> Result<Option<Report>> {
         let missing = || Error::new(Kind::Internal, "a solve of all ranks left nothing");
         let report = |problem: &Self| problem.report().cloned().ok_or_else(missing);
-        Ok(self.together(Call::Solve, 0, None)?.map(|_| report(self)).transpose()?)
+        self.together(Call::Solve, 0, None)?.map(|_| report(self)).transpose()
     }
 
     pub(super) fn check_together(&mut self, answer: Candidate) -> Result<Option<Certificate>> {
@@ -132,6 +134,9 @@ impl Problem {
     ) -> Result<Option<Finish>> {
         let Joined { rank, problem, role, .. } = joined;
         let (ranks, problem) = (&rank.ranks, *problem);
+        let flag = self.host.canceller();
+        flag.store(false, Ordering::Relaxed);
+        let _cancelled_by = CancelledBy::new(ranks, flag);
         match role {
             Role::Leads(leader) => {
                 let missing = || Error::new(Kind::Internal, "rank 0 has no problem of all ranks");
@@ -152,7 +157,7 @@ impl Problem {
         }
         if let Some(share) = end.share.take() {
             let mut findings = share.findings;
-            findings.motion = findings.own_motion(&self.model);
+            findings.motion = findings.own_motion(&self.model, joined.rank.ranks.rank);
             self.findings = Some(findings);
             if let Some((report, own)) = share.answer {
                 self.history().keep(own.into_answer(report)?, 0);
@@ -164,6 +169,26 @@ impl Problem {
             None => Ok(end),
         }
     }
+}
+
+/// The flag by which the host cancels the call on this rank, until it ends.
+struct CancelledBy<'a>(&'a Ranks);
+
+impl<'a> CancelledBy<'a> {
+    fn new(ranks: &'a Ranks, flag: Arc<AtomicBool>) -> Self {
+        ranks.cancel_by(Some(flag));
+        Self(ranks)
+    }
+}
+
+impl Drop for CancelledBy<'_> {
+    fn drop(&mut self) {
+        self.0.cancel_by(None);
+    }
+}
+
+fn panicked(rank: usize) -> Error {
+    Error::new(Kind::Internal, "the library has panicked").rank(rank)
 }
 
 fn for_one_rank() -> Error {

@@ -1,12 +1,13 @@
 //! Bodies and rows given on several ranks: the bits of one rank, whoever gives what.
 
-use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 use crate::error::{Error, Kind};
 use crate::ranks::loopback::linked;
 use crate::ranks::Ranks;
 use crate::serving::Rank;
-use crate::solver::{Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
+use crate::solver::{Outcome, Problem, Reply, RowKind, RowsInput, SparseInput, Storage};
 
 /// Unknowns of a chain.
 const N: usize = 5;
@@ -153,4 +154,32 @@ fn rows_of_two_ranks_that_contradict_each_other_are_named_by_their_own_numbers()
     let rows: Vec<_> = ends.into_iter().map(|(_, rows)| rows).collect();
     assert!(rows[0].is_empty() && rows[1].len() == 1 && rows[2].len() == 1, "{rows:?}");
     assert!((rows[1][0].0, rows[2][0].0) == (1, 2) && rows[1][0].1 * rows[2][0].1 < 0.0, "{rows:?}");
+}
+
+/// Rank 0 hears of a step, and another thread cancels on rank 1 alone.
+#[test]
+fn a_cancel_on_one_rank_ends_the_call_on_all() {
+    let (sender, receiver) = std::sync::mpsc::channel::<Arc<AtomicBool>>();
+    let (sender, receiver) = (Mutex::new(sender), Mutex::new(receiver));
+    let outcomes = on_ranks(3, |rank, problem| {
+        (0..4).filter(|p| p % 3 == rank).for_each(|p| drop(vec![add_chain(problem, p)]));
+        (1..4).filter(|p| p % 3 == rank).for_each(|p| add_row(problem, p));
+        if rank == 1 {
+            sender.lock().unwrap().send(problem.canceller()).unwrap();
+        }
+        if rank == 0 {
+            let flag = receiver.lock().unwrap().recv().unwrap();
+            problem.on_progress(Some(Box::new(move |_| {
+                flag.store(true, Ordering::Relaxed);
+                Reply::Continue
+            })));
+        }
+        let first = problem.solve().map(|report| report.outcome).map_err(|error| error.kind);
+        problem.on_progress(None);
+        (first, problem.solve().map(|report| report.outcome).map_err(|error| error.kind))
+    });
+    for (first, second) in outcomes {
+        assert!(first == Err(Kind::Cancelled) || first == Ok(Outcome::Cancelled), "{first:?}");
+        assert_eq!(second, Ok(Outcome::Solved), "the next call begins anew");
+    }
 }
