@@ -152,10 +152,11 @@ impl Problem {
 
     /// Takes what belongs to this rank.
     fn take_end(&mut self, mut end: Finish, called: Called, joined: &mut Joined) -> Result<Finish> {
-        if called.call == Call::Solve {
-            (self.history.current, joined.answered) = (None, None);
-        }
+        // a call that ends before the solve leaves the last answer
         if let Some(share) = end.share.take() {
+            if called.call == Call::Solve {
+                (self.history.current, joined.answered) = (None, None);
+            }
             let mut findings = share.findings;
             findings.motion = findings.own_motion(&self.model, joined.rank.ranks.rank);
             self.findings = Some(findings);

@@ -1,5 +1,7 @@
 //! Bodies and rows given on several ranks: the bits of one rank, whoever gives what.
 
+mod mistakes;
+
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 

@@ -1,0 +1,199 @@
+//! What one rank does wrong is told on all, with its rank and its numbers; and the same problem without the mistake is solved.
+
+use super::{add_chain, add_row, on_ranks, N};
+use crate::error::{Error, Kind};
+use crate::solver::{FrictionInput, Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
+
+/// Ranks of every problem; each has a chain, and the contact row of its lower end.
+const RANKS: usize = 3;
+
+fn give(problem: &mut Problem, rank: usize) {
+    add_chain(problem, rank);
+    if rank > 0 {
+        add_row(problem, rank);
+    }
+}
+
+/// Rank `by` makes the mistake, in each of its ways in turn; what all ranks hear.
+fn told(mistake: impl Fn(&mut Problem, bool) -> Result<Outcome, Error> + Sync) -> Vec<Vec<Error>> {
+    (0..RANKS)
+        .map(|by| {
+            on_ranks(RANKS, |rank, problem| {
+                give(problem, rank);
+                mistake(problem, rank == by).unwrap_err()
+            })
+        })
+        .collect()
+}
+
+fn solved(problem: &mut Problem) -> Result<Outcome, Error> {
+    problem.solve().map(|report| report.outcome)
+}
+
+/// All ranks hear the same, with the rank that has made the mistake.
+fn are_equal(all: &[Vec<Error>], kind: Kind) {
+    for (by, errors) in all.iter().enumerate() {
+        for error in errors {
+            assert_eq!((error.kind, error.place.rank), (kind, Some(by)), "{error}");
+            assert_eq!((&error.what, &error.place), (&errors[0].what, &errors[0].place));
+        }
+    }
+}
+
+fn row(problem: &mut Problem, kind: RowKind, numbers: &[i64], val: &[f64], rhs: f64) {
+    let rows = RowsInput { ptr: &[0, numbers.len()], body: None, dof: numbers, val, rhs: Some(&[rhs]) };
+    problem.add_rows(kind, rows).unwrap();
+}
+
+#[test]
+fn a_body_without_matrix() {
+    let errors = told(|problem, wrong| {
+        if wrong {
+            problem.add_body(2).unwrap();
+            problem.set_numbering(1, &[900, 901]).unwrap();
+        }
+        solved(problem)
+    });
+    are_equal(&errors, Kind::State);
+    assert!(errors.iter().flatten().all(|error| error.place.body == Some(1)));
+}
+
+#[test]
+fn a_body_without_numbers() {
+    let errors = told(|problem, wrong| {
+        if wrong {
+            add_unnumbered(problem, &[1.0, -0.5, 1.0]);
+        }
+        solved(problem)
+    });
+    are_equal(&errors, Kind::State);
+}
+
+/// Two unknowns with these entries of K.
+fn add_unnumbered(problem: &mut Problem, k: &[f64; 3]) -> usize {
+    let body = problem.add_body(2).unwrap();
+    let input = SparseInput { ptr: &[0, 1, 3], col: &[0, 0, 1], val: k, storage: Storage::Lower };
+    problem.set_stiffness(body, input).unwrap();
+    body
+}
+
+#[test]
+fn a_number_of_nobody() {
+    let errors = told(|problem, wrong| {
+        if wrong {
+            row(problem, RowKind::Inequality, &[0, 999], &[1.0, -1.0], 0.0);
+        }
+        solved(problem)
+    });
+    are_equal(&errors, Kind::Argument("dof"));
+    assert!(errors
+        .iter()
+        .flatten()
+        .all(|error| error.place.index == Some(999) && error.place.entry == Some(1)));
+}
+
+#[test]
+fn a_number_of_two_ranks_without_glue() {
+    let errors = told(|problem, wrong| {
+        if wrong {
+            let body = add_unnumbered(problem, &[1.0, -0.5, 1.0]);
+            problem.set_numbering(body, &[3, 900]).unwrap_or_else(|_| {
+                problem.set_numbering(body, &[13, 900]).unwrap();
+            });
+        }
+        solved(problem)
+    });
+    // rank 0 has number 3 itself, and takes one of rank 1
+    for error in errors.iter().flatten() {
+        assert_eq!(error.kind, Kind::Argument("number"), "{error}");
+        assert!(error.what.contains("glue = 1"), "{error}");
+    }
+}
+
+#[test]
+fn a_matrix_that_is_indefinite_and_a_null_space_that_is_none() {
+    let indefinite = told(|problem, wrong| {
+        if wrong {
+            let body = add_unnumbered(problem, &[1.0, 2.0, 1.0]);
+            problem.set_numbering(body, &[900, 901]).unwrap();
+        }
+        solved(problem)
+    });
+    are_equal(&indefinite, Kind::Indefinite);
+    let wrong_basis = told(|problem, wrong| {
+        if wrong {
+            problem.set_null_space(0, N, 1, &[1.0, 2.0, 0.0, 4.0, 1.0], N, Modes::Exact).unwrap();
+        }
+        solved(problem)
+    });
+    are_equal(&wrong_basis, Kind::NullSpace);
+    let bodies: Vec<_> = [indefinite, wrong_basis].concat().concat().iter().map(|e| e.place.body).collect();
+    assert!(bodies.iter().all(|body| *body == Some(1) || *body == Some(0)));
+}
+
+#[test]
+fn a_load_that_nothing_holds() {
+    let errors = told(|problem, wrong| {
+        if wrong {
+            let body = add_unnumbered(problem, &[1.0, -1.0, 1.0]);
+            problem.set_numbering(body, &[900, 901]).unwrap();
+            problem.set_load(body, &[1.0, 1.0]).unwrap();
+        }
+        solved(problem)
+    });
+    are_equal(&errors, Kind::LoadNotHeld);
+    assert!(errors.iter().flatten().all(|error| error.place.body == Some(1)));
+}
+
+#[test]
+fn an_equality_row_that_contradicts_another_of_its_rank() {
+    let errors = told(|problem, wrong| {
+        if wrong {
+            row(problem, RowKind::Equality, &[2], &[1.0], 0.0);
+            row(problem, RowKind::Equality, &[2], &[1.0], 1.0);
+        }
+        solved(problem)
+    });
+    are_equal(&errors, Kind::GapsContradict);
+}
+
+#[test]
+fn another_call_than_the_others_and_then_the_same() {
+    for by in 0..RANKS {
+        let ends = on_ranks(RANKS, |rank, problem| {
+            give(problem, rank);
+            let first = if rank == by { problem.setup().unwrap_err() } else { solved(problem).unwrap_err() };
+            let saved = if rank == by { problem.save_state().map(drop) } else { problem.setup() };
+            (first.kind, saved.unwrap_err().kind, solved(problem))
+        });
+        for end in ends {
+            assert_eq!(end, (Kind::State, Kind::State, Ok(Outcome::Solved)));
+        }
+    }
+}
+
+#[test]
+fn slips_that_one_rank_alone_has_committed() {
+    for by in 0..RANKS {
+        let ends = on_ranks(RANKS, |rank, problem| {
+            give(problem, rank);
+            let (number, val) = ([10 * rank as i64 + 2], [1.0]);
+            let rows = RowsInput { ptr: &[0, 1], body: None, dof: &number, val: &val, rhs: None };
+            let bound = Some(&[0.1][..]);
+            let node = FrictionInput { dim: 1, normal: &[-1], rows, coefficient: None, bound };
+            problem.add_friction(node).unwrap();
+            let first = solved(problem);
+            if rank == by {
+                problem.commit_friction().unwrap();
+            }
+            let second = solved(problem).unwrap_err().kind;
+            if rank != by {
+                problem.commit_friction().unwrap();
+            }
+            (first, second, solved(problem))
+        });
+        for end in ends {
+            assert_eq!(end, (Ok(Outcome::Solved), Kind::State, Ok(Outcome::Solved)));
+        }
+    }
+}
