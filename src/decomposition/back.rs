@@ -42,7 +42,7 @@ pub fn of_host(host: &HostModel, parts: &Parts, mut error: Error) -> Error {
             let mut others: Vec<_> = weights.iter().map(|(i, _)| *i).filter(|i| i != heaviest).collect();
             others.sort_unstable();
             let others: Vec<_> = others.into_iter().map(|i| kind_and_row(i, contact)).collect();
-            error.what = contradiction(kind, &others, &|kind, row| host.row_name(kind, row), &numbers);
+            error.what = contradiction(kind, &others, &|of, row| host.number_of(of, row), &numbers);
             error.place.index = glued.first().map(|number| *number as i64);
         }
     }

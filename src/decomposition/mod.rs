@@ -55,6 +55,7 @@ impl Decomposition {
         (model.contact, model.equalities, model.friction) = rows(host, &joints, &all, &copies)?;
         copies.iter_mut().enumerate().for_each(|(body, own)| drop(own.take_if(|_| !all.is_cut(body))));
         model.revisions = host.revisions;
+        model.given_by.clone_from(&host.given_by);
         model.parts = Some(Arc::new(all));
         let mut made = Self { model, copies, of: host.revisions, has_matrices: true };
         made.refresh(host)?;

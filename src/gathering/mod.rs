@@ -16,7 +16,7 @@ use crate::body::{Body, GivenThere, OtherForm};
 use crate::constraints::{Friction, FrictionNode, RowKind, RowSet, Taken};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Csr;
-use crate::model::{GivenBody, HostModel, Revisions};
+use crate::model::{GivenBody, GivenBy, HostModel, Revisions};
 use crate::platform::memory::reserved;
 
 const WHAT: &str = "the problem of all ranks";
@@ -132,8 +132,10 @@ pub fn gathered(
     model.contents.friction = friction(told, order, tangential)?;
     model.contents.revisions = revisions;
     model.joined = Some(places.joints());
-    let by = |kind: usize| order.rows[kind].iter().map(|at| (at.rank, at.number)).collect();
-    model.given_by = Some([by(0), by(1)]);
+    let by = |all: &[At]| all.iter().map(|at| (at.rank, at.number)).collect();
+    let (bodies, nodes) = (by(&order.bodies), by(&order.nodes));
+    let rows = order.rows.each_ref().map(|rows| by(rows));
+    model.contents.given_by = Some(Arc::new(GivenBy { bodies, rows, nodes }));
     Ok(model)
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::body::{Body, Form};
 use crate::constraints::{Friction, RowKind, RowSet};
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::mesh::Mesh;
 use crate::model::parts::Parts;
 use crate::model::settings::Settings;
@@ -25,6 +25,25 @@ pub struct SolvedModel {
     pub revisions: Revisions,
     /// If the bodies are pieces: the bodies of the host to which they belong.
     pub parts: Option<Arc<Parts>>,
+    /// If several ranks have given bodies and rows.
+    pub given_by: Option<Arc<GivenBy>>,
+}
+
+/// Of everything in the problem of all ranks the rank that has given it, and its number there.
+#[derive(Debug, Default)]
+pub struct GivenBy {
+    pub bodies: Vec<(usize, usize)>,
+    /// Contact, equality and tangential rows.
+    pub rows: [Vec<(usize, usize)>; 3],
+    pub nodes: Vec<(usize, usize)>,
+}
+
+/// What hosts count.
+#[derive(Debug, Clone, Copy)]
+pub enum Counted {
+    Body,
+    Row(RowKind),
+    Node,
 }
 
 /// Increased by every call that sets the named data, even if the data do not change.
@@ -113,6 +132,7 @@ impl SolvedModel {
             friction: Friction::default(),
             revisions: Revisions::default(),
             parts: None,
+            given_by: None,
         }
     }
 
@@ -181,6 +201,44 @@ impl SolvedModel {
         self.parts.as_ref().map_or(body, |parts| parts.parts[body].body)
     }
 
+    /// The rank that has given it, and its number there; none on one rank.
+    fn given_at(&self, of: Counted, number: usize) -> Option<(usize, usize)> {
+        let by = self.given_by.as_ref()?;
+        let all = match of {
+            Counted::Body => &by.bodies,
+            Counted::Row(kind) => &by.rows[kind as usize],
+            Counted::Node => &by.nodes,
+        };
+        all.get(number).copied()
+    }
+
+    /// The number of the host's body, row or node as texts have it: "3", or "3 of rank 1".
+    pub fn number_of(&self, of: Counted, number: usize) -> String {
+        let base = self.settings.index_base;
+        match self.given_at(of, number) {
+            Some((rank, number)) => format!("{} of rank {rank}", number as i64 + base),
+            None => (number as i64 + base).to_string(),
+        }
+    }
+
+    /// A place in the numbers of the rank that has given its body, row or node.
+    pub fn set_rank(&self, place: &mut Place) {
+        let kind = place.kind.and_then(|kind| RowKind::ALL.get(kind).copied());
+        let (of, number) = match (place.body, place.row.zip(kind), place.node) {
+            (Some(body), ..) => (Counted::Body, body),
+            (_, Some((row, kind)), _) => (Counted::Row(kind), row),
+            (_, _, Some(node)) => (Counted::Node, node),
+            _ => return,
+        };
+        let Some((rank, number)) = self.given_at(of, number).filter(|_| place.rank.is_none()) else { return };
+        place.rank = Some(rank);
+        match of {
+            Counted::Body => place.body = Some(number),
+            Counted::Row(_) => place.row = Some(number),
+            Counted::Node => place.node = Some(number),
+        }
+    }
+
     /// Whether the body is a piece of one of the host.
     pub fn is_piece(&self, body: usize) -> bool {
         self.parts.as_ref().is_some_and(|parts| parts.is_cut(parts.parts[body].body))
@@ -209,11 +267,6 @@ impl SolvedModel {
         let on_caller = |p: &usize| self.bodies[*p].body.k().is_some_and(|k| k.on_caller());
         bodies.iter().map(on_caller).collect()
     }
-}
-
-/// A row by its number, from `base`.
-pub fn row_name(kind: RowKind, row: usize, base: i64) -> String {
-    format!("{} {}", kind.name(), row as i64 + base)
 }
 
 fn no_body(body: usize, bodies: usize) -> Error {

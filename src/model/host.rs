@@ -3,9 +3,8 @@
 use std::collections::HashMap;
 use std::ops::{Deref, DerefMut};
 
-use crate::constraints::RowKind;
 use crate::error::Result;
-use crate::model::contents::{row_name, SolvedModel};
+use crate::model::contents::SolvedModel;
 use crate::model::parts::Joint;
 use crate::model::settings::Settings;
 
@@ -19,8 +18,6 @@ pub struct HostModel {
     pub joined: Option<Vec<Joint>>,
     /// Other ranks may have the unknowns that rows name by numbers.
     pub has_others: bool,
-    /// Of every contact and every equality row of the problem of all ranks: the rank that has given it, and its number there.
-    pub given_by: Option<[Vec<(usize, usize)>; 2]>,
     /// Increased if the numbers of a body change.
     pub numberings: u64,
 }
@@ -47,17 +44,7 @@ impl HostModel {
             unknowns: HashMap::new(),
             joined: None,
             has_others: false,
-            given_by: None,
             numberings: 0,
-        }
-    }
-
-    /// A contact or an equality row as the host knows it.
-    pub fn row_name(&self, kind: RowKind, row: usize) -> String {
-        let base = self.settings.index_base;
-        match self.given_by.as_ref().and_then(|by| by.get(kind as usize)?.get(row)) {
-            Some((rank, number)) => format!("{} of rank {rank}", row_name(kind, *number, base)),
-            None => row_name(kind, row, base),
         }
     }
 

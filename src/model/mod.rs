@@ -17,7 +17,7 @@ mod settings_text;
 mod words;
 
 pub use accuracy::{Accuracy, Lengths};
-pub use contents::{row_name, BodyRevisions, GivenBody, Revisions, Sizes, SolvedModel};
+pub use contents::{BodyRevisions, Counted, GivenBody, GivenBy, Revisions, Sizes, SolvedModel};
 pub use host::HostModel;
 pub use numbering::NAMED;
 pub use parts::{Joint, Part, Parts};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::constraints::{Friction, FrictionInput, RowKind, RowSet, RowsInput};
 use crate::error::{Error, Proof, Result};
-use crate::model::contents::SolvedModel;
+use crate::model::contents::{Counted, SolvedModel};
 use crate::model::host::HostModel;
 use crate::platform::memory::{self, Headroom};
 
@@ -136,15 +136,16 @@ pub fn proof_of_rows(margin: f64, mut weights: Vec<(usize, f64)>, heaviest: usiz
     Proof::Rows { margin, weights, heaviest }
 }
 
-/// The text of a proof: a row of this kind contradicts `others`, of these names, and the glue of unknowns with these numbers.
+/// The text of a proof: a row of this kind contradicts `others`, which have these numbers, and the glue of unknowns with these numbers.
 pub fn contradiction(
     kind: RowKind,
     others: &[(RowKind, usize)],
-    name: &dyn Fn(RowKind, usize) -> String,
+    number: &dyn Fn(Counted, usize) -> String,
     glued: &[i64],
 ) -> String {
     let mut all = vec![format!("this {}", kind.name())];
-    let name = |(kind, row): &(RowKind, usize)| name(*kind, *row);
+    let name =
+        |(kind, row): &(RowKind, usize)| format!("{} {}", kind.name(), number(Counted::Row(*kind), *row));
     match others {
         [] if !glued.is_empty() => {}
         [other] if glued.is_empty() => all.push(name(other)),

@@ -11,7 +11,7 @@ use crate::dual::{self, DistinctRows, Draft, Dual, Form};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::by_body::{ranges, ByBody};
 use crate::linalg::hash::{hash, Shared, START};
-use crate::model::{Lengths, Method, Preconditioning, Settings, SolvedModel};
+use crate::model::{Counted, Lengths, Method, Preconditioning, Settings, SolvedModel};
 use crate::numbers::setup::{ASSEMBLED, ASSEMBLED_LUMPED};
 use crate::platform::memory::reserved;
 use crate::platform::stopwatch;
@@ -125,7 +125,7 @@ impl Prepared {
         let Some(first) = (0..self.bodies.len()).find(carries) else { return Ok(()) };
         let all: usize =
             self.bodies.iter().filter_map(|own| own.carried.as_ref()).map(|own| own.dofs.len()).sum();
-        let number = model.name(first) as i64 + model.settings.index_base;
+        let number = model.number_of(Counted::Body, model.name(first));
         log.say(LogLevel::Result, || {
             format!(
                 "rows hold {all} unknowns far better than K does, as pilots: the first is in body {number}"

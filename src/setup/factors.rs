@@ -10,7 +10,7 @@ use crate::body::{input_key, pattern_key, same_body, same_matrix_of, value_key, 
 use crate::dual::{DistinctRows, Size};
 use crate::error::Result;
 use crate::linalg::hash::classes;
-use crate::model::SolvedModel;
+use crate::model::{Counted, SolvedModel};
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, Watch};
 use crate::setup::analysed::Analysed;
@@ -235,29 +235,31 @@ impl Prepared {
     /// Logs what rounding of the entries leaves uncertain about the null spaces of these bodies.
     fn tell_doubts(&self, model: &SolvedModel, bodies: &[usize], log: &Log) -> Result<()> {
         for &p in bodies {
-            let number = model.name(p) as i64 + model.settings.index_base;
+            let number = || model.number_of(Counted::Body, model.name(p));
             let Some(kplus) = self.bodies[p].inverse.as_ref().map(|of| &of.kplus) else { continue };
             if let Some(misfit) = kplus.misfit.filter(|_| kplus.gap.is_some()) {
                 let warning = if misfit.fit < misfit.of { "warning: " } else { "" };
-                let text =
-                    || format!("{warning}body {number}: {misfit}; the library searched its null space in K");
+                let text = || {
+                    format!("{warning}body {}: {misfit}; the library searched its null space in K", number())
+                };
                 log.say(LogLevel::Result, text)?;
             } else if let Some(held) = kplus.misfit.filter(|_| !model.is_piece(p)).and_then(|of| of.held()) {
-                log.say(LogLevel::Phase, || format!("body {number}: {held}"))?;
+                log.say(LogLevel::Phase, || format!("body {}: {held}", number()))?;
             }
             if kplus.is_soft() && self.bodies[p].carried.is_none() {
                 let soft = kplus.stiffness.iter().filter(|stiffness| **stiffness != 0.0);
                 let least = soft.clone().fold(f64::INFINITY, |least: f64, stiffness| least.min(*stiffness));
                 let text = || {
                     format!(
-                        "body {number}: K has small stiffness along {} motions, at least {least:.1e} of its stiffness",
+                        "body {}: K has small stiffness along {} motions, at least {least:.1e} of its stiffness",
+                        number(),
                         soft.count()
                     )
                 };
                 log.say(LogLevel::Result, text)?;
             }
             if let Some(doubt) = &kplus.doubt {
-                log.say(LogLevel::Result, || format!("warning: body {number}: {doubt}"))?;
+                log.say(LogLevel::Result, || format!("warning: body {}: {doubt}", number()))?;
             }
         }
         Ok(())

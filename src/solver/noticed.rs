@@ -3,7 +3,7 @@
 use crate::constraints::{FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::Csr;
-use crate::model::{HostModel, Parts};
+use crate::model::{Counted, HostModel, Parts};
 use crate::numbers::data::HIGH_FRICTION;
 use crate::numbers::rounding;
 use crate::progress::{Log, LogLevel};
@@ -13,7 +13,7 @@ pub fn data(log: &Log, model: &HostModel) -> Result<()> {
     if !log.is_heard(LogLevel::Result) {
         return Ok(());
     }
-    let number = |row: usize| row as i64 + model.settings.index_base;
+    let number = |row: usize| model.number_of(Counted::Row(RowKind::Inequality), row);
     let contact = &model.contact;
     let overlap = rows(contact, |i| contact.rhs[i] < 0.0);
     load(log, model, !overlap.is_empty())?;
@@ -45,8 +45,8 @@ pub fn data(log: &Log, model: &HostModel) -> Result<()> {
 /// Notes: a coefficient of friction that is rather a percentage or an angle, a tangential row that is the normal row, rows
 /// of very different lengths.
 fn friction(log: &Log, model: &HostModel) -> Result<()> {
-    let (rows, base) = (&model.friction.rows, model.settings.index_base);
-    let number = |node: usize| node as i64 + base;
+    let rows = &model.friction.rows;
+    let number = |node: usize| model.number_of(Counted::Node, node);
     let nodes = || model.friction.nodes.iter().enumerate();
     // steel on rubber has 1 to 2
     if let Some((k, node)) = nodes().find(|(_, node)| node.coefficient > HIGH_FRICTION) {
@@ -63,7 +63,8 @@ fn friction(log: &Log, model: &HostModel) -> Result<()> {
         node.rows().find(|&row| parallel(&rows.matrix, row, &model.contact.matrix, normal))
     };
     if let Some((k, node)) = nodes().find(|(_, node)| along(node).is_some()) {
-        let normal = node.normal.map_or(base, number);
+        let normal = node.normal.unwrap_or_default();
+        let normal = model.number_of(Counted::Row(RowKind::Inequality), normal);
         log.say(LogLevel::Phase, || {
             format!("note: a tangential row of node {} is a multiple of its contact row {normal}", number(k))
         })?;
@@ -93,8 +94,7 @@ pub fn loose(log: &Log, host: &HostModel, parts: Option<&Parts>) -> Result<()> {
         while let Some(&j) = left.next_if(|j| **j < host.offsets[body + 1]) {
             (count, slight) = (count + 1, slight.max(stiffness(j)));
         }
-        let base = host.settings.index_base;
-        let [body, dof] = [body, dof].map(|k| k as i64 + base);
+        let (body, dof) = (host.number_of(Counted::Body, body), dof as i64 + host.settings.index_base);
         let unknowns = if count == 1 { "1 unknown has".to_owned() } else { format!("{count} unknowns have") };
         let left_out = match slight {
             0.0 => String::new(),
@@ -146,7 +146,7 @@ fn unusual(log: &Log, model: &HostModel) -> Result<()> {
             (&short[..], "its entries are below 1e-12 of those of all other rows on its bodies"),
         ] {
             let Some(first) = some.first() else { continue };
-            let (count, number) = (some.len(), *first as i64 + model.settings.index_base);
+            let (count, number) = (some.len(), model.number_of(Counted::Row(kind), *first));
             log.say(LogLevel::Result, || {
                 format!("warning: {} {number}: {what} (rows like this: {count})", kind.name())
             })?;
@@ -170,7 +170,8 @@ pub fn repeated(
     of_host.retain(|(row, _)| *row < contact + model.equalities.len());
     let Some(&(first, _)) = of_host.first() else { return Ok(()) };
     let (kind, row) = if first < contact { ("contact", first) } else { ("equality", first - contact) };
-    let (count, base) = (of_host.len(), model.settings.index_base);
+    let count = of_host.len();
+    let of = Counted::Row(if first < contact { RowKind::Inequality } else { RowKind::Equality });
     let rows = if first < contact { &model.contact } else { &model.equalities };
     let twice = (0..rows.len()).find(|&other| {
         other != row && rows.matrix.row(other).eq(rows.matrix.row(row)) && rows.rhs[other] == rows.rhs[row]
@@ -178,8 +179,8 @@ pub fn repeated(
     log.say(LogLevel::Phase, || {
         format!(
             "note: rows that are multiples of other rows, with which they share one force: {count}; the first is {kind} row {}{}",
-            row as i64 + base,
-            twice.map_or(String::new(), |other| format!(": it is row {} given twice", other as i64 + base))
+            model.number_of(of, row),
+            twice.map_or(String::new(), |other| format!(": it is row {} given twice", model.number_of(of, other)))
         )
     })
 }

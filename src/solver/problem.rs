@@ -180,6 +180,10 @@ impl Problem {
             }
             false => (work(self, &mut watch), None),
         };
+        let ended = ended.map_err(|mut error| {
+            self.model.set_rank(&mut error.place);
+            error
+        });
         let outcome = ended.and_then(|done| {
             watch.log.phases(&self.prepared.phases(&self.model, &watch.phases), usize::MAX)?;
             Ok(done)

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::certificate::Certificate;
 use crate::error::Result;
-use crate::model::{HostModel, Sizes, SolvedModel, Word};
+use crate::model::{Counted, HostModel, Sizes, SolvedModel, Word};
 use crate::progress::{Log, LogLevel};
 use crate::setup::{Duals, Prepared, Ready};
 use crate::solve::{Outcome, Report, Slide};
@@ -31,7 +31,7 @@ pub fn begin(log: &Log, model: &HostModel, call: &str) -> Result<()> {
 pub fn result(log: &Log, model: &HostModel, report: &Report) -> Result<()> {
     log.say(LogLevel::Result, || result_line(report))?;
     if let Some(body) = report.travelled {
-        let body = body as i64 + model.settings.index_base;
+        let body = &model.number_of(Counted::Body, body);
         log.say(LogLevel::Result, || {
             format!(
                 "warning: the load of body {body} is below the rounding of its displacement and counts as none: its strain is \
@@ -45,7 +45,7 @@ pub fn result(log: &Log, model: &HostModel, report: &Report) -> Result<()> {
         log.say(LogLevel::Result, || what.to_owned())?;
     }
     if let Some(Slide { resisted, travel, body, .. }) = report.slide {
-        let body = body as i64 + model.settings.index_base;
+        let body = &model.number_of(Counted::Body, body);
         log.say(LogLevel::Result, || {
             format!(
                 "warning: body {body} moves as a rigid body by {travel:.1e} times its deformation, along a motion that its rows \

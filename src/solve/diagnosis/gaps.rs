@@ -10,7 +10,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
 use crate::linalg::Csr;
-use crate::model::{contradiction, proof_of_rows, row_name};
+use crate::model::{contradiction, proof_of_rows};
 use crate::numbers::linalg::ROOT;
 use crate::numbers::solve::{BEYOND, TRAVELLED};
 use crate::qp::{nearest_point, Polyhedron};
@@ -188,8 +188,7 @@ impl<'a> Contradictions<'a> {
         let mut others: Vec<_> = weights.iter().map(|(i, _)| *i).filter(|i| *i != heaviest).collect();
         others.sort_unstable();
         let others: Vec<_> = others.into_iter().map(|i| ready.island.kind_and_row(i)).collect();
-        let name = |kind, row| row_name(kind, row, model.settings.index_base);
-        let what = contradiction(kind, &others, &name, &[]);
+        let what = contradiction(kind, &others, &|of, row| model.number_of(of, row), &[]);
         let error =
             Error::new(Kind::GapsContradict, what).row(row).kind(kind as usize).value(-excess).limit(0.0);
         let place = |i: usize| ready.island.in_stack(model.contact.len(), i);

@@ -2,7 +2,7 @@
 
 use crate::certificate::{Certificate, Entry};
 use crate::constraints::RowKind;
-use crate::error::{Error, Place, Proof, Result};
+use crate::error::{Error, Proof, Result};
 use crate::gathering::{At, Order};
 use crate::model::{HostModel, Joint};
 use crate::solve::{Answer, OfOthers, Report};
@@ -94,24 +94,8 @@ impl<'a> Split<'a> {
 
     /// An error in the numbers of the rank that has its place.
     pub fn error(&self, mut error: Error) -> Error {
-        self.place(&mut error.place);
+        self.model.set_rank(&mut error.place);
         error
-    }
-
-    fn place(&self, of: &mut Place) {
-        let at = match (of.body, of.row.zip(of.kind), of.node) {
-            (Some(body), ..) => Some(self.body(body)),
-            (_, Some((row, kind)), _) => self.order.rows.get(kind).and_then(|rows| rows.get(row)).copied(),
-            (_, _, Some(node)) => self.order.nodes.get(node).copied(),
-            _ => None,
-        };
-        let Some(At { rank, number }) = at.filter(|_| of.rank.is_none()) else { return };
-        of.rank = Some(rank);
-        match (of.body, of.row, of.node) {
-            (Some(_), ..) => of.body = Some(number),
-            (_, Some(_), _) => of.row = Some(number),
-            _ => of.node = Some(number),
-        }
     }
 
     fn report(&self, report: &Report) -> Report {
@@ -180,7 +164,7 @@ impl<'a> Split<'a> {
 
     fn findings(&self, rank: usize, own: &Own, findings: &Findings) -> Findings {
         let mut told = findings.clone();
-        self.place(&mut told.place);
+        self.model.set_rank(&mut told.place);
         let lists = [&mut told.untouched, &mut told.doubtful, &mut told.soft];
         lists.into_iter().for_each(|list| *list = self.own_bodies(rank, list));
         told.contact = own.rows[0].len();

@@ -9,7 +9,7 @@ use crate::error::{Error, Kind};
 use crate::ranks::loopback::linked;
 use crate::ranks::Ranks;
 use crate::serving::Rank;
-use crate::solver::{Outcome, Problem, Reply, RowKind, RowsInput, SparseInput, Storage};
+use crate::solver::{LogLevel, Outcome, Problem, Reply, RowKind, RowsInput, SparseInput, Storage};
 
 /// Unknowns of a chain.
 const N: usize = 5;
@@ -184,4 +184,32 @@ fn a_cancel_on_one_rank_ends_the_call_on_all() {
         assert!(first == Err(Kind::Cancelled) || first == Ok(Outcome::Cancelled), "{first:?}");
         assert_eq!(second, Ok(Outcome::Solved), "the next call begins anew");
     }
+}
+
+#[test]
+fn the_log_on_rank_0_names_rows_and_failed_bodies_by_rank_and_number() {
+    let lines = Arc::new(Mutex::new(String::new()));
+    on_ranks(3, |rank, problem| {
+        add_chain(problem, rank);
+        if rank == 1 {
+            add_row(problem, 2);
+            let rows = RowsInput { ptr: &[0, 1], body: None, dof: &[14], val: &[1.0], rhs: Some(&[-0.5]) };
+            problem.add_rows(RowKind::Inequality, rows).unwrap();
+        }
+        let heard = Arc::clone(&lines);
+        problem.on_log(Some((
+            LogLevel::Phase,
+            Box::new(move |_, line: &str| {
+                heard.lock().unwrap().push_str(line);
+                heard.lock().unwrap().push('\n');
+                0
+            }),
+        )));
+        // nothing holds chain 2, which is pulled down
+        problem.solve().unwrap_err();
+    });
+    let lines = lines.lock().unwrap();
+    assert!(lines.contains("most in row 1 of rank 1: c = -5.0e-1"), "{lines}");
+    assert!(lines.contains("rank 2, body 0") || lines.contains("rank 1, body 0"), "{lines}");
+    assert_eq!(lines.matches("3 bodies, 15 unknowns").count(), 1, "rank 0 alone tells: {lines}");
 }
