@@ -2,7 +2,6 @@
 
 mod battery;
 mod coulomb;
-#[cfg(feature = "loopback")]
 mod dealt;
 mod friction;
 mod liars;
@@ -13,6 +12,7 @@ mod support {
     pub mod asked;
     pub mod face;
     pub mod hand_over;
+    pub mod linked;
     pub mod rungs;
     pub mod warnings;
 }

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use decks::random::Random;
-use feti_contact::ranks::loopback::linked;
 use feti_contact::solver::{Modes, Outcome, Problem, Rank, RowKind, RowsInput, SparseInput, Storage};
+
+use crate::support::linked::on_ranks;
 
 const WIDTH: usize = 7;
 const LENGTH: usize = 24;
@@ -127,9 +128,9 @@ fn dealt(blocks: &[Block], ghosts: bool, size: usize, random: &mut Random) -> An
         all.into_iter().map(|(_, k, rank)| (k, rank)).collect::<Vec<_>>()
     };
     let (bodies, rows) = (deal(blocks.len()), deal(NODES));
-    let run = |ranks: Arc<feti_contact::solver::Ranks>| {
-        let (number, mut problem, mut answer) = (ranks.rank, Problem::new(), nothing(blocks.len()));
-        problem.join(Rank::new(ranks)).unwrap();
+    let run = |rank: Arc<Rank>| {
+        let (number, mut problem, mut answer) = (rank.ranks.rank, Problem::new(), nothing(blocks.len()));
+        problem.join(rank).unwrap();
         problem.set_i64("glue", 1).unwrap();
         let own = |all: &[(usize, usize)]| -> Vec<usize> {
             all.iter().filter(|(_, rank)| *rank == number).map(|(k, _)| *k).collect()
@@ -143,13 +144,7 @@ fn dealt(blocks: &[Block], ghosts: bool, size: usize, random: &mut Random) -> An
         take(&mut problem, &bodies, &rows, &mut answer);
         answer
     };
-    let (leader, others) = linked(size);
-    let all = std::thread::scope(|scope| {
-        let others: Vec<_> = others.into_iter().map(|ranks| scope.spawn(|| run(ranks))).collect();
-        let first = run(leader);
-        let rest = others.into_iter().map(|thread| thread.join().unwrap());
-        std::iter::once(first).chain(rest).collect::<Vec<_>>()
-    });
+    let all = on_ranks(size, run);
     let mut merged = nothing(blocks.len());
     for own in all {
         let forces = merged.force.iter_mut().zip(own.force);

@@ -8,11 +8,11 @@ use std::sync::Arc;
 use decks::random::Random;
 use decks::{battery, hard, varied, Deck, Rows};
 use feti_contact::error::Result;
-use feti_contact::ranks::loopback::linked;
 use feti_contact::solver::{
-    serve, Candidate, FrictionInput, Modes, Problem, Rank, Ranks, Report, RowKind, RowsInput,
+    serve, Candidate, FrictionInput, Modes, Problem, Rank, Report, RowKind, RowsInput,
 };
 
+use crate::support::linked::on_ranks;
 use crate::support::{asked, hand_over};
 use crate::{coulomb, soft};
 
@@ -223,9 +223,8 @@ fn nothing(deck: &Deck) -> Bits {
 
 /// Every rank gives its hand; the answers of a first solve, and of a second one with loads once and a quarter as large.
 fn solved(deck: &Deck, hands: &[Hand], motions: Motions) -> Vec<Bits> {
-    let (leader, others) = linked(hands.len());
-    let run = |ranks: Arc<Ranks>| {
-        let (number, rank, mut problem) = (ranks.rank, Rank::new(ranks), Problem::new());
+    let run = |rank: Arc<Rank>| {
+        let (number, mut problem) = (rank.ranks.rank, Problem::new());
         if hands[number].serves {
             serve(&rank, 1).unwrap();
             return Vec::new();
@@ -267,12 +266,7 @@ fn solved(deck: &Deck, hands: &[Hand], motions: Motions) -> Vec<Bits> {
         serve(&rank, 1).unwrap();
         ends
     };
-    let mut all = std::thread::scope(|scope| {
-        let others: Vec<_> = others.into_iter().map(|ranks| scope.spawn(|| run(ranks))).collect();
-        let first = run(leader);
-        let rest = others.into_iter().map(|thread| thread.join().unwrap());
-        std::iter::once(first).chain(rest).collect::<Vec<_>>()
-    });
+    let mut all = on_ranks(hands.len(), run);
     let mut merged = all.remove(0);
     for own in all.into_iter().filter(|own| !own.is_empty()) {
         for (to, from) in merged.iter_mut().zip(own) {
