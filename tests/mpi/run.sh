@@ -1,6 +1,6 @@
 #!/bin/sh
 # run.sh PREFIX ROOT WORK MPI...: with each MPI (openmpi, mpich, as Debian names their compilers) the installed sources for MPI are
-# compiled without a warning, as they are and with messages cut at 4096 bytes; examples 15 to 17 in C and Fortran, a FORTRAN 77 host and
+# compiled without a warning, as they are and with messages cut at 4096 bytes; examples 15 to 17 in C and Fortran, FORTRAN 77 hosts and
 # hostile hosts print on 2 and 4 ranks what they print on 1. The shared library needs no MPI. With LENDING, the prefix of a library that lends every
 # body, and PROBLEMS, a folder of problem files: also what it makes of these, bit by bit.
 set -eu
@@ -66,7 +66,9 @@ built() {
     done
     rm feti_contact*.o
     $fc -O2 -J. -I"$face" -c $(pkg --variable=f77sources) $(pkg --variable=mpi_f77_sources)
-    $fc -O2 -std=legacy -I"$face" "$root/tests/mpi/lends.f" feti_contact_*.o shim.o -o lends $link
+    for host in lends gives; do
+        $fc -O2 -std=legacy -I"$face" "$root/tests/mpi/$host.f" feti_contact_*.o shim.o -o "$host" $link
+    done
 }
 
 # by_cmake MPI: component MPI of the CMake package builds example 15 in both languages, with the compilers of this MPI.
@@ -102,6 +104,7 @@ for mpi in "$@"; do
         [ "$chunk" = whole ] || continue
         for example in $examples; do same "$mpi" "./${example}_fortran"; done
         same "$mpi" ./lends
+        same "$mpi" ./gives
         for case in single freed thread outside; do same "$mpi" ./hostile "$case"; done
         [ -z "${LENDING-}" ] || limit=600 same "$mpi" ./files "$PROBLEMS"/*.feti
         by_cmake "$mpi" "$([ "$mpi" = mpich ] && echo libmpich || echo libmpi)"
