@@ -9,7 +9,7 @@ pub use numbers::{shared, SECTION};
 pub use places::{copies, At, Copies, Places};
 pub use told::{Revised, Told, Values};
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::body::{Body, GivenThere, OtherForm};
@@ -156,6 +156,8 @@ fn rows(
     let entries = told.iter().map(|of| of.rows[kind as usize].entries.len()).sum();
     let mut matrix = Csr::with_room(unknowns, all.len(), entries);
     let (mut rhs, mut compliance) = (reserved(all.len(), WHAT)?, reserved(all.len(), WHAT)?);
+    let lost: Vec<HashSet<usize>> =
+        told.iter().map(|of| of.rows[kind as usize].cancelled.iter().copied().collect()).collect();
     let mut cancelled = Vec::new();
     for (i, at) in all.iter().enumerate() {
         let own = &told[at.rank].rows[kind as usize];
@@ -179,7 +181,7 @@ fn rows(
         matrix.push_row(row);
         rhs.push(own.rhs[at.number]);
         compliance.push(own.compliance[at.number]);
-        if own.cancelled.contains(&at.number) {
+        if lost[at.rank].contains(&at.number) {
             cancelled.push(i);
         }
     }

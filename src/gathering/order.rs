@@ -4,7 +4,7 @@
 use std::cmp::Ordering;
 
 use crate::gathering::places::At;
-use crate::gathering::told::{Named, RowsTold, Told};
+use crate::gathering::told::{RowsTold, Told};
 
 /// All of what ranks have so many of, rank by rank.
 fn all(counts: impl Iterator<Item = usize>) -> Vec<At> {
@@ -44,8 +44,8 @@ pub fn nodes(told: &[Told], is_numbered: bool, normal: impl Fn(At) -> usize) -> 
         nodes.sort_by(|a, b| {
             let rows = |at: &At| told[at.rank].nodes[at.number].rows();
             let own = |at: &At| &told[at.rank].rows[2];
-            let each = rows(a).zip(rows(b)).map(|(i, j)| compared((own(a), i), (own(b), j)));
-            let first = each.into_iter().find(|order| *order != Ordering::Equal);
+            let mut each = rows(a).zip(rows(b)).map(|(i, j)| compared((own(a), i), (own(b), j)));
+            let first = each.find(|order| *order != Ordering::Equal);
             first.unwrap_or_else(|| normal(a).cmp(&normal(b)))
         });
     }
@@ -53,21 +53,15 @@ pub fn nodes(told: &[Told], is_numbered: bool, normal: impl Fn(At) -> usize) -> 
 }
 
 fn compared((a, i): (&RowsTold, usize), (b, j): (&RowsTold, usize)) -> Ordering {
-    let [one, other] = [sorted(a.row(i)), sorted(b.row(j))];
+    let [one, other] = [a.row(i), b.row(j)];
     let by_number = one.iter().map(|of| of.number).cmp(other.iter().map(|of| of.number));
     let by_value = || {
-        let each = one.iter().zip(&other).map(|(a, b)| a.value.total_cmp(&b.value));
-        each.into_iter().find(|order| *order != Ordering::Equal).unwrap_or(Ordering::Equal)
+        let mut each = one.iter().zip(other).map(|(a, b)| a.value.total_cmp(&b.value));
+        each.find(|order| *order != Ordering::Equal).unwrap_or(Ordering::Equal)
     };
     let by_law = || {
         let rhs = a.rhs[i].total_cmp(&b.rhs[j]);
         rhs.then_with(|| a.compliance[i].total_cmp(&b.compliance[j]))
     };
     by_number.then_with(by_value).then_with(by_law)
-}
-
-fn sorted(row: &[Named]) -> Vec<Named> {
-    let mut row = row.to_vec();
-    row.sort_by_key(|of| of.number);
-    row
 }

@@ -38,6 +38,7 @@ pub struct BodyTold {
 #[derive(Clone, Default)]
 pub struct RowsTold {
     pub ptr: Vec<usize>,
+    /// Of each row by ascending numbers.
     pub entries: Vec<Named>,
     pub rhs: Vec<f64>,
     pub compliance: Vec<f64>,
@@ -137,9 +138,14 @@ fn rows(model: &HostModel, rows: &RowSet) -> RowsTold {
             Named { number, body: (!rows.is_named(i)).then_some((body, dof)), value }
         }
     };
+    let row = |i: usize| {
+        let mut row: Vec<Named> = rows.matrix.row(i).map(|of| named(i, of)).collect();
+        row.sort_by_key(|of| of.number);
+        row
+    };
     RowsTold {
         ptr: rows.matrix.ptr.clone(),
-        entries: (0..rows.len()).flat_map(|i| rows.matrix.row(i).map(move |of| named(i, of))).collect(),
+        entries: (0..rows.len()).flat_map(row).collect(),
         rhs: rows.rhs.clone(),
         compliance: rows.compliance.to_vec(),
         cancelled: rows.cancelled().to_vec(),

@@ -240,6 +240,9 @@ impl Problem {
 
     /// Time and memory of the phases of the last setup or solve, also if it failed.
     pub fn phases(&self) -> Vec<PhaseReport> {
+        if let Some(report) = self.report().filter(|_| self.is_answered_together()) {
+            return report.phases.clone();
+        }
         self.prepared.phases(&self.model, &self.phases)
     }
 

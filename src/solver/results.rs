@@ -28,7 +28,8 @@ impl Problem {
         let ((name, of), entry) = fails.max_by(|(_, a), (_, b)| a.ratio.total_cmp(&b.ratio))?;
         let kind = if of.ends_with("row") { format!(" of this {of}") } else { String::new() };
         let what = format!("{name}{kind} is {:.1e}, the limit {:.1e}", entry.figure, certificate.limit);
-        let error = Error::new(Kind::State, what).value(entry.figure).limit(certificate.limit);
+        let mut error = Error::new(Kind::State, what).value(entry.figure).limit(certificate.limit);
+        error.place.rank = entry.place.map(|_| entry.rank).filter(|_| self.is_answered_together());
         Some(match (entry.place, *of) {
             (None, _) => error,
             (Some(body), "body") => error.body(body),
