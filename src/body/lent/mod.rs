@@ -26,7 +26,7 @@ pub struct Lending {
     /// Bodies are dealt out in turn, whatever they cost: for tests.
     pub all: bool,
     /// Ranks that serve, and rank 0; the others have only the bodies that the host has given there.
-    pub serve: Vec<bool>,
+    pub serve: Box<[bool]>,
     /// Bodies that have been given a rank, and those of them that were lent.
     dealt: [AtomicUsize; 2],
     /// Hears of these at the end.
@@ -43,7 +43,7 @@ impl Drop for Lending {
 
 impl Lending {
     pub fn new(ranks: Arc<Ranks>, all: bool) -> Self {
-        let serve = vec![true; ranks.size];
+        let serve = vec![true; ranks.size].into();
         Self { ranks, all, serve, dealt: Default::default(), told: None }
     }
 

@@ -120,7 +120,7 @@ impl Leading<'_> {
         given: Option<Given>,
     ) -> Result<Vec<Finish>> {
         if let Some(lending) = &mut self.all.prepared.lending {
-            lending.serve.clone_from(&self.leader.serve);
+            lending.serve = self.leader.serve.clone().into();
             lending.serve[0] = true;
         }
         match called.call {
