@@ -116,9 +116,10 @@ stage:
 	@$(MAKE) --no-print-directory install PREFIX=$(STAGE) DESTDIR= > /dev/null
 
 # ---- examples, built as a host would by hand
-# Example 15 needs MPI: make mpi.
-EXAMPLES_C       := $(filter-out 15_%,$(basename $(notdir $(wildcard examples_c/[0-9]*.c))))
-EXAMPLES_FORTRAN := $(filter-out 15_%,$(basename $(notdir $(wildcard examples_fortran/[0-9]*.f90 examples_fortran/[0-9]*.f))))
+# These need MPI: make mpi.
+WITH_MPI         := 15_% 16_% 17_%
+EXAMPLES_C       := $(filter-out $(WITH_MPI),$(basename $(notdir $(wildcard examples_c/[0-9]*.c))))
+EXAMPLES_FORTRAN := $(filter-out $(WITH_MPI),$(basename $(notdir $(wildcard examples_fortran/[0-9]*.f90 examples_fortran/[0-9]*.f))))
 PROGRAMS := $(EXAMPLES_C:%=build/demo/%_c) $(EXAMPLES_FORTRAN:%=build/demo/%_fortran)
 SHARED_C := $(filter-out examples_c/1%.c examples_c/0%.c,$(wildcard examples_c/*.c))
 # Modules before their users: interfaces, base, the parts, the whole; then the reader and the rest.
