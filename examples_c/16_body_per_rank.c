@@ -4,6 +4,8 @@
    matrix, its weight, and the contact row of its lower end, which names an unknown of the bar below by its number. All ranks make the
    calls; each gets the displacements of its bars and the forces of its rows:
      mpirun -n 4 16_body_per_rank */
+#include <stddef.h>
+
 #include "demo.h"
 #include "feti_contact_mpi.h"
 
