@@ -160,7 +160,7 @@ impl Leading<'_> {
         std::mem::swap(&mut self.all.host, &mut self.own.host);
         let all = &self.all;
         let answer = all.current().map(|current| &*current.answer).filter(|_| call == Call::Solve);
-        let split = Split::new(&self.leader.order, &all.model, answer)?;
+        let split = Split::new(&self.leader.order, &all.model, self.ranks.size, answer)?;
         let failure = ended.err().map(|error| Failure(split.error(error)));
         Ok(self.each(|rank| Finish {
             failure: failure.clone(),
@@ -182,21 +182,21 @@ impl Leading<'_> {
         std::mem::swap(&mut self.all.host, &mut self.own.host);
         let checked = self.all.check_alone_with(candidate, |_, _| Ok(all.left.clone()));
         std::mem::swap(&mut self.all.host, &mut self.own.host);
-        let split = Split::new(&self.leader.order, &self.all.model, None)?;
+        let split = Split::new(&self.leader.order, &self.all.model, self.ranks.size, None)?;
         let certificate = Some(split.certificate(&checked.map_err(|error| split.error(error))?));
         Ok(self.each(|_| Finish { certificate, ..Finish::default() }))
     }
 
     fn open_motion(&mut self, k: usize) -> Result<Vec<Finish>> {
         let open = self.all.open_motion(k)?;
-        let split = Split::new(&self.leader.order, &self.all.model, None)?;
+        let split = Split::new(&self.leader.order, &self.all.model, self.ranks.size, None)?;
         let motion = |rank: usize| Some((split.own(rank, &open.v), split.own_body(rank, open.body?)));
         Ok(self.each(|rank| Finish { motion: motion(rank), ..Finish::default() }))
     }
 
     fn dependent(&mut self) -> Result<Vec<Finish>> {
         let rows = self.all.dependent_equalities()?;
-        let split = Split::new(&self.leader.order, &self.all.model, None)?;
+        let split = Split::new(&self.leader.order, &self.all.model, self.ranks.size, None)?;
         Ok(self.each(|rank| Finish { rows: split.own_rows(rank, &rows), ..Finish::default() }))
     }
 

@@ -160,8 +160,8 @@ impl Problem {
             let mut findings = share.findings;
             findings.motion = findings.own_motion(&self.model, joined.rank.ranks.rank);
             self.findings = Some(findings);
-            if let Some((report, own)) = share.answer {
-                self.history().keep(own.into_answer(report)?, 0);
+            if let Some(answer) = share.answer {
+                self.history().keep(answer, 0);
                 joined.answered = Some(self.model.revisions);
             }
         }

@@ -15,38 +15,27 @@ use crate::solver::together::failure::{put_kind, take_kind};
 
 /// The results of one rank.
 pub struct Share {
-    pub answer: Option<(Report, OwnAnswer)>,
+    /// Of its own bodies and rows.
+    pub answer: Option<Answer>,
     pub findings: Findings,
 }
 
-/// As [`Answer`], of own bodies and rows.
-pub struct OwnAnswer {
-    pub u: Vec<f64>,
-    pub forces: Vec<Vec<f64>>,
-    pub slips: Vec<f64>,
-    pub friction: Vec<FrictionState>,
-    pub alpha: Vec<Vec<f64>>,
-    pub gaps: Vec<f64>,
-    pub states: Vec<RowState>,
-    pub force_errors: Vec<f64>,
-    pub without: Vec<bool>,
-    /// Some bodies of some rank have no answer.
-    pub fails: bool,
-    pub of_others: OfOthers,
-}
-
 wire_struct!(Share { answer, findings });
-wire_struct!(OwnAnswer {
+wire_struct!(Answer {
+    report,
     u,
-    forces,
+    lambda,
+    mu,
+    tangential,
     slips,
     friction,
     alpha,
     gaps,
     states,
     force_errors,
+    failed,
+    cleaned,
     without,
-    fails,
     of_others
 });
 wire_struct!(OfOthers { of_rows, of_glue, reached });
@@ -192,31 +181,6 @@ impl Wire for Findings {
             doubtful: Wire::take(from)?,
             soft: Wire::take(from)?,
             contact: Wire::take(from)?,
-        })
-    }
-}
-
-impl OwnAnswer {
-    /// As the answer of a problem.
-    pub fn into_answer(self, report: Report) -> Result<Answer> {
-        let Self { forces, without, fails, of_others, .. } = self;
-        let [lambda, mu, tangential] = <[Vec<f64>; 3]>::try_from(forces).map_err(|_| damaged())?;
-        Ok(Answer {
-            report,
-            u: self.u,
-            lambda,
-            mu,
-            tangential,
-            slips: self.slips,
-            friction: self.friction,
-            alpha: self.alpha,
-            gaps: self.gaps,
-            states: self.states,
-            force_errors: self.force_errors,
-            failed: vec![fails],
-            cleaned: Vec::new(),
-            without,
-            of_others: Some(Box::new(of_others)),
         })
     }
 }

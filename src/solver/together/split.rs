@@ -7,9 +7,10 @@ use crate::gathering::{At, Order};
 use crate::model::{HostModel, Joint};
 use crate::solve::{Answer, OfOthers, Report};
 use crate::solver::findings::Findings;
-use crate::solver::together::share::{OwnAnswer, Share};
+use crate::solver::together::share::Share;
 
 /// The bodies, rows and nodes of one rank in the problem of all, in the order of their numbers there.
+#[derive(Default)]
 struct Own {
     bodies: Vec<usize>,
     rows: [Vec<usize>; 3],
@@ -17,22 +18,20 @@ struct Own {
 }
 
 impl Own {
-    fn of(order: &Order, rank: usize) -> Self {
-        let own = |all: &[At]| {
-            let mut own: Vec<(usize, usize)> = all
-                .iter()
-                .enumerate()
-                .filter(|(_, at)| at.rank == rank)
-                .map(|(k, at)| (at.number, k))
-                .collect();
-            own.sort_unstable();
-            own.into_iter().map(|(_, k)| k).collect::<Vec<usize>>()
+    /// Of every rank.
+    fn of_all(order: &Order, ranks: usize) -> Vec<Self> {
+        let mut own: Vec<Self> = (0..ranks).map(|_| Self::default()).collect();
+        let mut split = |all: &[At], list: fn(&mut Self) -> &mut Vec<usize>| {
+            let mut ascending: Vec<(At, usize)> = all.iter().copied().zip(0..).collect();
+            ascending.sort_unstable();
+            ascending.into_iter().for_each(|(at, k)| list(&mut own[at.rank]).push(k));
         };
-        Self {
-            bodies: own(&order.bodies),
-            rows: order.rows.each_ref().map(|rows| own(rows)),
-            nodes: own(&order.nodes),
-        }
+        split(&order.bodies, |own| &mut own.bodies);
+        split(&order.rows[0], |own| &mut own.rows[0]);
+        split(&order.rows[1], |own| &mut own.rows[1]);
+        split(&order.rows[2], |own| &mut own.rows[2]);
+        split(&order.nodes, |own| &mut own.nodes);
+        own
     }
 }
 
@@ -45,16 +44,21 @@ pub struct Split<'a> {
     order: &'a Order,
     model: &'a HostModel,
     /// Of every rank.
+    own: Vec<Own>,
     others: Vec<OfOthers>,
 }
 
 impl<'a> Split<'a> {
-    pub fn new(order: &'a Order, model: &'a HostModel, answer: Option<&Answer>) -> Result<Self> {
+    pub fn new(
+        order: &'a Order,
+        model: &'a HostModel,
+        ranks: usize,
+        answer: Option<&Answer>,
+    ) -> Result<Self> {
         let nothing = || OfOthers { of_rows: vec![Vec::new(); RowKind::ALL.len()], ..OfOthers::default() };
-        let all = [&order.bodies, &order.nodes].into_iter().flatten();
-        let ranks = all.map(|at| at.rank + 1).max().unwrap_or(0);
         let mut others: Vec<OfOthers> = (0..ranks).map(|_| nothing()).collect();
-        let Some(answer) = answer else { return Ok(Self { order, model, others }) };
+        let all = Own::of_all(order, ranks);
+        let Some(answer) = answer else { return Ok(Self { order, model, own: all, others }) };
         let starts = order.starts();
         let own = |j: usize| {
             let body = model.offsets[1..].partition_point(|end| *end <= j);
@@ -78,14 +82,12 @@ impl<'a> Split<'a> {
                 others[rank].of_glue.push((j, push));
             }
         }
-        let reached = model.friction.reached(&answer.u, &answer.tangential)?;
-        for rank in 0..ranks {
-            let dim = model.friction.dim;
-            let nodes = Own::of(order, rank).nodes;
-            others[rank].reached =
-                nodes.iter().flat_map(|k| &reached[dim * k..dim * (k + 1)]).copied().collect();
+        let (dim, reached) = (model.friction.dim, model.friction.reached(&answer.u, &answer.tangential)?);
+        for (to, own) in others.iter_mut().zip(&all) {
+            let nodes = own.nodes.iter().flat_map(|k| &reached[dim * k..dim * (k + 1)]);
+            to.reached = nodes.copied().collect();
         }
-        Ok(Self { order, model, others })
+        Ok(Self { order, model, own: all, others })
     }
 
     fn body(&self, body: usize) -> At {
@@ -118,8 +120,8 @@ impl<'a> Split<'a> {
 
     /// Of values over all unknowns those of the bodies of a rank.
     pub fn own(&self, rank: usize, all: &[f64]) -> Vec<f64> {
-        let own = Own::of(self.order, rank).bodies;
-        own.into_iter().flat_map(|body| &all[self.model.range(body)]).copied().collect()
+        let own = self.own[rank].bodies.iter();
+        own.flat_map(|body| &all[self.model.range(*body)]).copied().collect()
     }
 
     /// The number of a body on this rank.
@@ -137,33 +139,37 @@ impl<'a> Split<'a> {
 
     /// What a rank gets.
     pub fn share(&self, rank: usize, answer: Option<&Answer>, findings: &Findings) -> Share {
-        let own = Own::of(self.order, rank);
-        let answer = answer.map(|answer| (self.report(&answer.report), self.own_answer(rank, &own, answer)));
-        Share { answer, findings: self.findings(rank, &own, findings) }
+        let answer = answer.map(|answer| self.own_answer(rank, answer));
+        Share { answer, findings: self.findings(rank, findings) }
     }
 
-    fn own_answer(&self, rank: usize, own: &Own, answer: &Answer) -> OwnAnswer {
-        let dim = self.model.friction.dim;
-        let u = own.bodies.iter().flat_map(|body| &answer.u[self.model.range(*body)]).copied().collect();
-        let forces = RowKind::ALL.iter().map(|kind| picked(answer.forces(*kind), &own.rows[*kind as usize]));
+    fn own_answer(&self, rank: usize, answer: &Answer) -> Answer {
+        let (own, dim) = (&self.own[rank], self.model.friction.dim);
+        let forces = |kind: RowKind| picked(answer.forces(kind), &own.rows[kind as usize]);
+        let [lambda, mu, tangential] = RowKind::ALL.map(forces);
         let of_node = |k: &usize| (dim * k..dim * (k + 1)).map(|i| answer.slips[i]);
-        OwnAnswer {
-            u,
-            forces: forces.collect(),
+        Answer {
+            report: self.report(&answer.report),
+            u: self.own(rank, &answer.u),
+            lambda,
+            mu,
+            tangential,
             slips: own.nodes.iter().flat_map(of_node).collect(),
             friction: picked(&answer.friction, &own.nodes),
             alpha: picked(&answer.alpha, &own.bodies),
             gaps: picked(&answer.gaps, &own.rows[0]),
             states: picked(&answer.states, &own.rows[0]),
             force_errors: picked(&answer.force_errors, &own.bodies),
+            // some bodies of some rank have no answer
+            failed: vec![answer.without.contains(&true)],
+            cleaned: Vec::new(),
             without: picked(&answer.without, &own.bodies),
-            fails: answer.without.contains(&true),
-            of_others: self.others.get(rank).cloned().unwrap_or_default(),
+            of_others: Some(Box::new(self.others[rank].clone())),
         }
     }
 
-    fn findings(&self, rank: usize, own: &Own, findings: &Findings) -> Findings {
-        let mut told = findings.clone();
+    fn findings(&self, rank: usize, findings: &Findings) -> Findings {
+        let (own, mut told) = (&self.own[rank], findings.clone());
         self.model.set_rank(&mut told.place);
         let lists = [&mut told.untouched, &mut told.doubtful, &mut told.soft];
         lists.into_iter().for_each(|list| *list = self.own_bodies(rank, list));

@@ -22,7 +22,7 @@ use crate::solver::{FrictionInput, Outcome, Problem, RowKind, RowsInput, SparseI
 type Asked = [u64; Name::ALL.len()];
 
 /// Unknowns of a chain.
-const N: usize = 5;
+pub(super) const N: usize = 5;
 
 /// Chains in a row, of springs `stiffness[p]`, the first held; gaps between neighbours, and each pushed to the first.
 fn chains(stiffness: &[f64], lending: Option<Lending>) -> Problem {
@@ -50,7 +50,7 @@ fn set(problem: &mut Problem, body: usize, k: f64) {
 }
 
 /// K of a body that consists of chains, the first of them held if `held`.
-fn set_chains(problem: &mut Problem, body: usize, stiffness: &[f64], held: bool) {
+pub(super) fn set_chains(problem: &mut Problem, body: usize, stiffness: &[f64], held: bool) {
     let row = |i: usize| {
         let (k, at) = (stiffness[i / N], i % N);
         let is_free_end = (at == 0 && !(held && i == 0)) || at + 1 == N;
@@ -60,7 +60,7 @@ fn set_chains(problem: &mut Problem, body: usize, stiffness: &[f64], held: bool)
 }
 
 /// K of springs in a row: of each unknown the entry before the diagonal, if it is not 0, and that on it.
-fn set_springs(problem: &mut Problem, body: usize, rows: impl Iterator<Item = (f64, f64)>) {
+pub(super) fn set_springs(problem: &mut Problem, body: usize, rows: impl Iterator<Item = (f64, f64)>) {
     let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
     for (i, (before, own)) in rows.enumerate() {
         if before != 0.0 {

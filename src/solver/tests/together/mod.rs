@@ -9,10 +9,8 @@ use crate::error::{Error, Kind};
 use crate::ranks::loopback::linked;
 use crate::ranks::Ranks;
 use crate::serving::Rank;
-use crate::solver::{LogLevel, Outcome, Problem, Reply, RowKind, RowsInput, SparseInput, Storage};
-
-/// Unknowns of a chain.
-const N: usize = 5;
+use crate::solver::tests::lent::{set_chains, N};
+use crate::solver::{LogLevel, Outcome, Problem, Reply, RowKind, RowsInput};
 
 /// Runs `host` on every rank, each with its part of a problem; what the ranks return.
 fn on_ranks<T: Send>(size: usize, host: impl Fn(usize, &mut Problem) -> T + Sync) -> Vec<T> {
@@ -32,20 +30,8 @@ fn on_ranks<T: Send>(size: usize, host: impl Fn(usize, &mut Problem) -> T + Sync
 
 /// Chain p of springs; the first is held. Its unknowns have the numbers from 10 p.
 fn add_chain(problem: &mut Problem, p: usize) -> usize {
-    let (body, k) = (problem.add_body(N).unwrap(), 2.0 + (p % 3) as f64);
-    let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
-    for i in 0..N {
-        if i > 0 {
-            col.push(i as i64 - 1);
-            val.push(-k);
-        }
-        let is_free_end = (i == 0 && p > 0) || i + 1 == N;
-        col.push(i as i64);
-        val.push(if is_free_end { k } else { 2.0 * k });
-        ptr.push(col.len());
-    }
-    let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
-    problem.set_stiffness(body, input).unwrap();
+    let body = problem.add_body(N).unwrap();
+    set_chains(problem, body, &[2.0 + (p % 3) as f64], p == 0);
     let numbers: Vec<i64> = (0..N as i64).map(|i| 10 * p as i64 + i).collect();
     problem.set_numbering(body, &numbers).unwrap();
     let mut f = [0.0; N];
@@ -81,6 +67,21 @@ fn serial(count: usize) -> (Vec<Vec<u64>>, Vec<u64>, Vec<Vec<u64>>) {
         bits(&r)
     };
     (u, lambda, (0..count).map(reaction).collect())
+}
+
+/// A rank may have rows alone; what rows do to its bodies is nothing.
+#[test]
+fn the_last_rank_has_a_row_and_no_body() {
+    let reactions = on_ranks(3, |rank, problem| {
+        if rank < 2 {
+            add_chain(problem, rank);
+        } else {
+            add_row(problem, 1);
+        }
+        assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+        problem.reactions(None).unwrap().len()
+    });
+    assert_eq!(reactions, [N, N, 0]);
 }
 
 #[test]
