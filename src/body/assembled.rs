@@ -46,6 +46,29 @@ impl Assembled {
         Ok(Arc::new(Self { pieces: self.pieces.clone(), diagonal }))
     }
 
+    /// K as one matrix. Of an entry that several pieces have, their values are added in the order of the pieces.
+    pub fn sum(&self) -> Result<Symmetric> {
+        let (n, entries) = (self.order(), self.entries());
+        let mut ends = filled(n + 1, 0usize, WHAT)?;
+        self.each_entry(|i, _, _| ends[i + 1] += 1);
+        (0..n).for_each(|i| ends[i + 1] += ends[i]);
+        let mut all = filled(entries, (0u32, 0.0), WHAT)?;
+        self.each_entry(|i, j, v| {
+            all[ends[i]] = (j as u32, v);
+            ends[i] += 1;
+        });
+        let mut sum = Symmetric::with_room(n, entries, WHAT)?;
+        let mut begin = 0;
+        for end in &ends[..n] {
+            let row = &mut all[begin..*end];
+            row.sort_by_key(|(j, _)| *j);
+            let same = row.chunk_by(|a, b| a.0 == b.0);
+            sum.push_row(same.map(|of| (of[0].0 as usize, of.iter().map(|(_, v)| v).sum())));
+            begin = *end;
+        }
+        Ok(sum)
+    }
+
     /// Memory for a body of n unknowns in addition to its pieces.
     pub fn room_for(n: usize) -> Result<Vec<f64>> {
         zeros(n, "a stiffness matrix")
@@ -192,5 +215,8 @@ mod tests {
         let mut twofold = [Twofold::from(1.0); 3];
         k.add_twofold(-0.5, &[1.0, 2.0, 4.0], &mut twofold).unwrap();
         assert_eq!(twofold.map(Twofold::value), [4.0, 4.0, -5.0]);
+        let sum = k.sum().unwrap();
+        let rows: Vec<Vec<_>> = (0..3).map(|i| sum.lower_row(i).collect()).collect();
+        assert_eq!(rows, [vec![(0, 2.0)], vec![(1, 3.0)], vec![(0, -2.0), (1, -3.0), (2, 5.0)]]);
     }
 }

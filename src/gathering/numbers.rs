@@ -8,15 +8,14 @@ use crate::error::Result;
 /// Numbers of a section.
 pub const SECTION: usize = 1 << 16;
 
-/// The numbers that several of `count` lists have, ascending, each with these lists. A list is ascending and comes in sections, `next` of
-/// its number, until one is empty.
+/// The numbers that several lists have, ascending, each with these lists. A list is ascending and comes in sections: of each the first, and
+/// `next` of its number until one is empty.
 pub fn shared(
-    count: usize,
+    firsts: Vec<Vec<usize>>,
     mut next: impl FnMut(usize) -> Result<Vec<usize>>,
 ) -> Result<Vec<(usize, Vec<usize>)>> {
-    let (mut sections, mut heads) = (Vec::with_capacity(count), BinaryHeap::with_capacity(count));
-    for list in 0..count {
-        let section = next(list)?;
+    let (mut sections, mut heads) = (Vec::new(), BinaryHeap::new());
+    for (list, section) in firsts.into_iter().enumerate() {
         heads.extend(section.first().map(|number| Reverse((*number, list))));
         sections.push((section, 1));
     }
@@ -48,14 +47,15 @@ mod tests {
         let lists = [vec![1, 4, 5, 9, 10], vec![2, 4, 10, 11], vec![4, 9, 1 << 59], vec![]];
         for section in 1..6 {
             let mut at = [0; 4];
-            let next = |list: usize| {
+            let mut next = |list: usize| {
                 let end = (at[list] + section).min(lists[list].len());
                 let own = lists[list][at[list]..end].to_vec();
                 at[list] = end;
                 Ok(own)
             };
             let expected = [(4, vec![0, 1, 2]), (9, vec![0, 2]), (10, vec![0, 1])];
-            assert_eq!(shared(4, next).unwrap(), expected, "{section}");
+            let firsts = (0..4).map(|list| next(list).unwrap()).collect();
+            assert_eq!(shared(firsts, next).unwrap(), expected, "{section}");
         }
     }
 }

@@ -18,6 +18,8 @@ pub struct HostModel {
     pub joined: Option<Vec<Joint>>,
     /// Other ranks may have the unknowns that rows name by numbers.
     pub has_others: bool,
+    /// Bodies given by elements are not cut unless the host says so.
+    pub stays_whole: bool,
     /// Increased if the numbers of a body change.
     pub numberings: u64,
 }
@@ -44,6 +46,7 @@ impl HostModel {
             unknowns: HashMap::new(),
             joined: None,
             has_others: false,
+            stays_whole: false,
             numberings: 0,
         }
     }

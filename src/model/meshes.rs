@@ -140,6 +140,7 @@ impl HostModel {
     fn cut_of(&self, body: usize) -> Result<Vec<u32>> {
         let mesh = self.mesh(body)?.connectivity();
         let pieces = match usize::try_from(self.settings.pieces) {
+            Ok(0) | Err(_) if self.stays_whole => 1,
             Ok(0) | Err(_) => pieces_for(mesh.unknowns()),
             Ok(wanted) => wanted,
         };
@@ -157,6 +158,17 @@ impl HostModel {
         let places = self.bodies[body].body.coordinates.as_ref().map(|all| all.places());
         let centres = places.map(|places| centres(&elements, places)).transpose()?;
         cut(&elements, centres.as_deref(), pieces)
+    }
+
+    /// Bodies that have been cut become one matrix.
+    pub fn make_whole(&mut self) -> Result<()> {
+        for body in 0..self.bodies.len() {
+            let Some(k) = self.bodies[body].body.assembled() else { continue };
+            let whole = k.sum().map_err(|e| e.body(body))?;
+            let given = self.change(body, Change::Values)?;
+            (given.body.stiffness, given.body.other) = (Some(Arc::new(whole)), None);
+        }
+        Ok(())
     }
 }
 

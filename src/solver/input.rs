@@ -211,7 +211,7 @@ impl Problem {
     /// Takes over the content of a file. The problem must be empty; after an error it is still empty. Options are those
     /// of the file, all others have their defaults; `index_base` is unchanged.
     pub fn read_file(&mut self, path: &Path) -> Result<()> {
-        self.check_file_together(false)?;
+        self.check_read_together()?;
         self.model.read_file(path)
     }
 
@@ -222,8 +222,10 @@ impl Problem {
 
     /// Writes all input to a new file, which replaces an old one when it is complete.
     pub fn write_file(&mut self, path: &Path) -> Result<()> {
-        self.check_file_together(true)?;
-        self.model.write_file(path)
+        match self.write_together(path)? {
+            true => Ok(()),
+            false => self.model.write_file(path),
+        }
     }
 
     /// The bytes that `write_file` writes.

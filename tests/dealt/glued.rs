@@ -119,8 +119,9 @@ fn undivided() -> Answer {
     answer
 }
 
-/// Subdomains and rows dealt out to ranks.
-fn dealt(blocks: &[Block], ghosts: bool, size: usize, random: &mut Random) -> Answer {
+/// Subdomains and rows dealt out to ranks; the answer, and the bytes of a problem file of all ranks.
+fn dealt(blocks: &[Block], ghosts: bool, size: usize, random: &mut Random) -> (Answer, Vec<u8>) {
+    let path = std::env::temp_dir().join(format!("feti-glued-{}.feti", std::process::id()));
     let mut deal = |count: usize| {
         let mut all: Vec<(u64, usize, usize)> =
             (0..count).map(|k| (random.bits(), k, random.below(size))).collect();
@@ -140,6 +141,7 @@ fn dealt(blocks: &[Block], ghosts: bool, size: usize, random: &mut Random) -> An
         let (bodies, rows) = (own(&bodies), own(&rows));
         bodies.iter().for_each(|k| add(*k, &mut problem));
         rows.iter().for_each(|node| add_row(&mut problem, *node));
+        problem.write_file(&path).unwrap();
         assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
         take(&mut problem, &bodies, &rows, &mut answer);
         answer
@@ -152,7 +154,17 @@ fn dealt(blocks: &[Block], ghosts: bool, size: usize, random: &mut Random) -> An
         let u = merged.u.iter_mut().zip(own.u);
         u.filter(|(to, _)| to.is_empty()).for_each(|(to, from)| *to = from);
     }
-    merged
+    let file = std::fs::read(&path).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    (merged, file)
+}
+
+/// Of one rank that reads the file: u of the subdomains in their order.
+fn read(file: &[u8], blocks: usize) -> Vec<Vec<f64>> {
+    let mut problem = Problem::new();
+    problem.read_bytes(file).unwrap();
+    assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+    (0..blocks).map(|p| problem.displacement(p).unwrap().to_vec()).collect()
 }
 
 #[test]
@@ -164,14 +176,23 @@ fn subdomains_of_several_ranks_have_the_forces_of_the_undivided_body() {
         (0..4).flat_map(|b| (0..3).map(move |a| (ends[a]..ends[a + 1], 6 * b..6 * b + 6))).collect();
     for (blocks, ghosts) in [(&strips, false), (&patches, false), (&strips, true)] {
         let mut random = Random::new(7);
-        let one = dealt(blocks, ghosts, 2, &mut random);
+        let (one, file) = dealt(blocks, ghosts, 2, &mut random);
+        let mut in_order: Vec<&Vec<f64>> = one.u.iter().collect();
+        // a ghost may be the least number of its body
+        let again = read(&file, blocks.len());
+        let by_bits = |u: &&Vec<f64>| u.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        in_order.sort_by_key(by_bits);
+        let mut again: Vec<&Vec<f64>> = again.iter().collect();
+        again.sort_by_key(by_bits);
+        assert!(again == in_order, "solved from the file");
         let largest = right.force.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
         for (got, force) in one.force.iter().zip(&right.force) {
             assert!((got - force).abs() <= 1e-9 * largest, "{got} for {force}");
         }
         for size in [2, 3, 4, 4] {
-            let other = dealt(blocks, ghosts, size, &mut random);
+            let (other, bytes) = dealt(blocks, ghosts, size, &mut random);
             assert_eq!(bits(&other), bits(&one), "{size} ranks");
+            assert!(bytes == file, "{size} ranks: another file");
         }
     }
 }

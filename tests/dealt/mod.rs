@@ -3,6 +3,7 @@
 
 mod glued;
 
+use std::path::Path;
 use std::sync::Arc;
 
 use decks::random::Random;
@@ -221,8 +222,9 @@ fn nothing(deck: &Deck) -> Bits {
     }
 }
 
-/// Every rank gives its hand; the answers of a first solve, and of a second one with loads once and a quarter as large.
-fn solved(deck: &Deck, hands: &[Hand], motions: Motions) -> Vec<Bits> {
+/// Every rank gives its hand; the answers of a first solve, and of a second one with loads once and a quarter as large. With a path it is
+/// first written to a file.
+fn solved(deck: &Deck, hands: &[Hand], motions: Motions, file: Option<&Path>) -> Vec<Bits> {
     let run = |rank: Arc<Rank>| {
         let (number, mut problem) = (rank.ranks.rank, Problem::new());
         if hands[number].serves {
@@ -243,6 +245,7 @@ fn solved(deck: &Deck, hands: &[Hand], motions: Motions) -> Vec<Bits> {
                 problem.set_load(body, &load).unwrap();
             }
         };
+        file.into_iter().for_each(|path| problem.write_file(path).unwrap());
         let first = problem.solve();
         end(&mut problem, &first);
         let state = problem.save_state().unwrap();
@@ -375,21 +378,45 @@ fn check(problem: &mut Problem) -> Result<Report> {
     Ok(report)
 }
 
-/// Three deals of every problem, on 2 to 4 ranks.
+/// Three deals of every problem, on 2 to 4 ranks; every fifth also as a file.
 fn compare(name: &str, seed: u64, deck: &Deck, motions: Motions) {
-    let mut one = solved(deck, &[Hand::default(), whole(deck)], motions);
+    let path = std::env::temp_dir().join(format!("feti-dealt-{}-{name}-{seed}.feti", std::process::id()));
+    let file = Some(&path).filter(|_| seed % 5 == 0).map(|path| &**path);
+    let written = || file.map(|path| std::fs::read(path).unwrap());
+    let mut one = solved(deck, &[Hand::default(), whole(deck)], motions, file);
+    let bytes = written();
+    bytes.iter().for_each(|bytes| is_read(name, seed, bytes, deck, &one[0]));
     one.iter_mut().for_each(|bits| without_order_of_equal_rows(deck, bits));
     let mut random = Random::new(seed ^ 0xdea1);
     for deal in 0..3 {
         let size = 2 + (seed as usize + deal) % 3;
         let hands = dealt(deck, size, &mut random);
-        let mut got = solved(deck, &hands, motions);
+        let mut got = solved(deck, &hands, motions, file);
+        assert!(written() == bytes, "{name} {seed}, deal {deal} on {size} ranks: another file");
         got.iter_mut().for_each(|bits| without_order_of_equal_rows(deck, bits));
         assert_eq!(got.len(), one.len());
         assert_eq!(got[got.len() - 2], got[0], "{name} {seed}: the restored answer");
         for (step, (got, one)) in got.iter().zip(&one).enumerate() {
             assert_eq!(got, one, "{name} {seed}, deal {deal} on {size} ranks, solve {step}");
         }
+    }
+    file.into_iter().for_each(|path| std::fs::remove_file(path).unwrap());
+}
+
+/// One rank that reads the file of several has their displacements, and writes the same file.
+fn is_read(name: &str, seed: u64, file: &[u8], deck: &Deck, all: &Bits) {
+    let mut problem = Problem::new();
+    problem.read_bytes(file).unwrap();
+    assert!(problem.write_bytes().unwrap() == file, "{name} {seed}: written again it is another file");
+    problem.solve().ok();
+    let Ok(u) = problem.displacements() else {
+        assert!(all.u.iter().all(Vec::is_empty), "{name} {seed}: solved from a file it has no answer");
+        return;
+    };
+    let mut at = 0;
+    for (body, expected) in deck.bodies.iter().zip(&all.u) {
+        assert_eq!(&bits(&u[at..at + body.dofs()]), expected, "{name} {seed}: solved from a file");
+        at += body.dofs();
     }
 }
 

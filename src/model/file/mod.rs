@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::error::{Error, Kind, Result};
 use crate::mesh::Mesh;
 use crate::model::bodies::SPOILED;
+use crate::model::file::write::Bodies;
 use crate::model::host::HostModel;
 use crate::platform::memory::reserved;
 
@@ -24,11 +25,21 @@ const BUFFER: usize = 1 << 17;
 impl HostModel {
     pub fn write_file(&self, path: &Path) -> Result<()> {
         self.check_kept()?;
+        let write = &mut |p: usize, out: &mut dyn Write| write::body(&self.bodies[p], out);
+        self.write_with(path, Bodies { bytes: write::lengths(self), write })
+    }
+
+    /// Options and rows are those of this model; the bodies may be elsewhere.
+    pub fn write_with(&self, path: &Path, bodies: Bodies) -> Result<()> {
         regular(path)?;
         // if the path is a link, its target is replaced
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         let (temporary, file) = create_beside(&target).map_err(|e| failed(path, "create", &e))?;
-        let written = self.fill(file, &target).map_err(|e| failed(path, "write", &e));
+        let written = self.fill(bodies, file, &target).map_err(|e| {
+            // of a body elsewhere
+            let own = e.get_ref().and_then(|e| e.downcast_ref::<Error>()).cloned();
+            own.unwrap_or_else(|| failed(path, "write", &e))
+        });
         let renamed =
             written.and_then(|()| fs::rename(&temporary, &target).map_err(|e| failed(path, "rename", &e)));
         if renamed.is_err() {
@@ -40,9 +51,12 @@ impl HostModel {
 
     pub fn write_bytes(&self) -> Result<Vec<u8>> {
         self.check_kept()?;
-        let length = usize::try_from(write::length(self)).unwrap_or(usize::MAX);
+        let lengths = write::lengths(self);
+        let length = usize::try_from(write::length(self, &lengths)).unwrap_or(usize::MAX);
         let mut bytes = reserved(length, "a problem file")?;
-        write::write(self, &mut bytes).map_err(|e| Error::new(Kind::Io, e.to_string()))?;
+        let write = &mut |p: usize, out: &mut dyn Write| write::body(&self.bodies[p], out);
+        write::write(self, Bodies { bytes: lengths, write }, &mut bytes)
+            .map_err(|e| Error::new(Kind::Io, e.to_string()))?;
         Ok(bytes)
     }
 
@@ -72,7 +86,7 @@ impl HostModel {
 
     /// Checks that the library has all input: no functions in place of a matrix, no refused values, no incomplete first
     /// pass over elements.
-    fn check_kept(&self) -> Result<()> {
+    pub fn check_kept(&self) -> Result<()> {
         for (p, given) in self.bodies.iter().enumerate() {
             if given.body.operator().is_some() {
                 let what =
@@ -100,12 +114,12 @@ impl HostModel {
         Err(Error::new(Kind::State, what))
     }
 
-    fn fill(&self, file: File, target: &Path) -> io::Result<()> {
+    fn fill(&self, bodies: Bodies, file: File, target: &Path) -> io::Result<()> {
         if let Ok(old) = fs::metadata(target) {
             file.set_permissions(old.permissions())?;
         }
         let mut out = BufWriter::with_capacity(BUFFER, file);
-        write::write(self, &mut out)?;
+        write::write(self, bodies, &mut out)?;
         out.flush()?;
         out.get_ref().sync_all()
     }

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use crate::body::Modes;
 use crate::constraints::{Friction, RowKind, RowSet};
+use crate::error::{Error, Kind, Result};
 use crate::mesh::{Mesh, Piece as MeshPiece};
 use crate::model::contents::GivenBody;
 use crate::model::file::format::{
@@ -11,6 +12,7 @@ use crate::model::file::format::{
     HEADER, LOAD, MAGIC, NULL_SPACE, NUMBERING, OPTIONS, PIECES, ROWS, STIFFNESS,
 };
 use crate::model::host::HostModel;
+use crate::platform::memory::reserved;
 
 /// Numbers defined by the format.
 pub const EXACT: u64 = 0;
@@ -97,7 +99,12 @@ impl Section<'_> {
         self.pieces.iter().map(Piece::bytes).sum()
     }
 
-    fn write(&self, out: &mut impl Write) -> io::Result<()> {
+    /// With head and checksum.
+    fn bytes(&self) -> u64 {
+        section_length(self.payload()).unwrap_or(0)
+    }
+
+    fn write(&self, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
         let mut out = Summed { out, crc: Crc::new() };
         out.write_all(&self.tag)?;
         out.write_all(&0_u32.to_le_bytes())?;
@@ -109,18 +116,18 @@ impl Section<'_> {
 }
 
 /// A writer that also computes a checksum.
-struct Summed<'a, W> {
+struct Summed<'a, W: ?Sized> {
     out: &'a mut W,
     crc: Crc,
 }
 
-impl<W: Write> Summed<'_, W> {
+impl<W: Write + ?Sized> Summed<'_, W> {
     fn finish(self) -> io::Result<()> {
         self.out.write_all(&self.crc.value().to_le_bytes())
     }
 }
 
-impl<W: Write> Write for Summed<'_, W> {
+impl<W: Write + ?Sized> Write for Summed<'_, W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.out.write(bytes)?;
         self.crc.add(&bytes[..written]);
@@ -132,31 +139,59 @@ impl<W: Write> Write for Summed<'_, W> {
     }
 }
 
-/// Bytes of the whole file.
-pub fn length(model: &HostModel) -> u64 {
-    let sizes = sections(model).filter_map(|section| section_length(section.payload()));
-    HEADER + sizes.sum::<u64>()
+/// The bodies of a file in their order: the bytes of each, and what writes them.
+pub struct Bodies<'a> {
+    pub bytes: Vec<u64>,
+    pub write: &'a mut dyn FnMut(usize, &mut dyn Write) -> io::Result<()>,
 }
 
-/// Header and sections.
-pub fn write(model: &HostModel, out: &mut impl Write) -> io::Result<()> {
+/// Bytes of the whole file.
+pub fn length(model: &HostModel, of_bodies: &[u64]) -> u64 {
+    let others = std::iter::once(options(model)).chain(rows_and_nodes(model));
+    HEADER + of_bodies.iter().sum::<u64>() + others.map(|section| section.bytes()).sum::<u64>()
+}
+
+/// Bytes of all sections of every body.
+pub fn lengths(model: &HostModel) -> Vec<u64> {
+    let of_body = |given| of_body(given).map(|section| section.bytes()).sum();
+    model.bodies.iter().map(of_body).collect()
+}
+
+/// Section k of a body; nothing after the last.
+pub fn section(given: &GivenBody, k: usize) -> Result<Vec<u8>> {
+    let Some(section) = of_body(given).nth(k) else { return Ok(Vec::new()) };
+    let mut bytes = reserved(usize::try_from(section.bytes()).unwrap_or(usize::MAX), "a problem file")?;
+    section.write(&mut bytes).map_err(|e| Error::new(Kind::Io, e.to_string()))?;
+    Ok(bytes)
+}
+
+/// All sections of a body.
+pub fn body(given: &GivenBody, out: &mut dyn Write) -> io::Result<()> {
+    of_body(given).try_for_each(|section| section.write(out))
+}
+
+/// Header and sections. The sections of a body follow its BODY section; then come rows, and finally nodes with friction.
+pub fn write(model: &HostModel, bodies: Bodies, out: &mut impl Write) -> io::Result<()> {
     let mut header = Summed { out, crc: Crc::new() };
     header.write_all(&MAGIC)?;
     header.write_all(&FORMAT.to_le_bytes())?;
     header.write_all(&format::library().to_le_bytes())?;
-    header.write_all(&length(model).to_le_bytes())?;
+    header.write_all(&length(model, &bodies.bytes).to_le_bytes())?;
     header.write_all(&0_u32.to_le_bytes())?;
     header.finish()?;
-    sections(model).try_for_each(|section| section.write(out))
+    options(model).write(out)?;
+    (0..bodies.bytes.len()).try_for_each(|body| (bodies.write)(body, out))?;
+    rows_and_nodes(model).try_for_each(|section| section.write(out))
 }
 
-/// The sections of a body follow its BODY section; then come rows, and finally nodes with friction.
-fn sections(model: &HostModel) -> impl Iterator<Item = Section<'_>> {
-    let options = Section { tag: OPTIONS, pieces: vec![Piece::Text(model.settings.changes())] };
-    let bodies = model.bodies.iter().flat_map(of_body);
+fn options(model: &HostModel) -> Section<'_> {
+    Section { tag: OPTIONS, pieces: vec![Piece::Text(model.settings.changes())] }
+}
+
+fn rows_and_nodes(model: &HostModel) -> impl Iterator<Item = Section<'_>> {
     let contact = rows(INEQUALITY, model.rows(RowKind::Inequality));
     let equalities = rows(EQUALITY, model.rows(RowKind::Equality));
-    std::iter::once(options).chain(bodies).chain(contact).chain(equalities).chain(friction(&model.friction))
+    contact.into_iter().chain(equalities).chain(friction(&model.friction))
 }
 
 fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {

@@ -6,6 +6,7 @@ mod pieces;
 
 use crate::error::{Error, Kind};
 use crate::model::file::format::{padding, Crc, FORMAT, HEADER, LOAD, MAGIC};
+use crate::model::file::write::{length, lengths};
 use crate::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 use std::fs;
 use std::path::PathBuf;
@@ -48,6 +49,11 @@ fn refused(bytes: &[u8]) -> Error {
     error
 }
 
+/// Bytes of the file of a problem.
+fn expected_length(problem: &Problem) -> u64 {
+    length(&problem.model, &lengths(&problem.model))
+}
+
 fn of_section(tag: &[u8; 4], flags: u32, payload: &[u8]) -> Vec<u8> {
     let length = (payload.len() as u64).to_le_bytes();
     let mut bytes = [&tag[..], &flags.to_le_bytes(), &length, payload].concat();
@@ -77,7 +83,7 @@ fn numbers(numbers: &[u64]) -> Vec<u8> {
 fn all_that_is_registered_comes_back_bit_by_bit() {
     let problem = small();
     let bytes = problem.write_bytes().unwrap();
-    assert_eq!(bytes.len() as u64, crate::model::file::write::length(&problem.model));
+    assert_eq!(bytes.len() as u64, expected_length(&problem));
     let mut back = Problem::new();
     back.set_text("threads=3 index_base=1 gamma=2").unwrap();
     back.read_bytes(&bytes).unwrap();

@@ -7,6 +7,7 @@ use crate::body::Facts;
 use crate::decomposition::Decomposition;
 use crate::error::{Error, Kind, Result};
 use crate::gathering::{copies, Revised, Told, Values, SECTION};
+use crate::model::file::write::lengths;
 use crate::model::HostModel;
 use crate::platform::threads;
 use crate::ranks::{message, value, Incoming, Ranks, Wire, END};
@@ -14,11 +15,12 @@ use crate::serving::answer;
 use crate::solver::joined::Follower;
 use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
+use crate::solver::together::file::section_of;
 use crate::solver::together::messages::{
-    Begin, Begun, Call, Called, Finish, Given, PartTold, PartsTold, Touch, Touched, BEGIN, FINISH, LOADS,
-    NUMBERS, TOUCH,
+    Begin, Begun, Call, Called, Finish, Given, PartTold, PartsTold, Touch, Touched, BEGIN, FINISH, LENGTHS,
+    LOADS, NUMBERS, SECTION_OF_FILE, TOUCH,
 };
-use crate::solver::together::{check_part, panicked};
+use crate::solver::together::{panicked, ready_part};
 
 impl Follower {
     /// Answers until the call ends.
@@ -51,7 +53,7 @@ impl Follower {
                     return Err(Error::new(Kind::State, what));
                 }
                 question => {
-                    let mine = (number, self.leads);
+                    let mine = (ranks.rank, number, self.leads);
                     let answered = catch_unwind(AssertUnwindSafe(|| match question {
                         BEGIN => begun(problem, &incoming, mine, (called, given.take())),
                         NUMBERS => self.section(&problem.model),
@@ -60,6 +62,10 @@ impl Follower {
                         }
                         LOADS => {
                             value(&incoming.message).and_then(|first| sent(self.loads(&problem.model, first)))
+                        }
+                        LENGTHS => Ok(message(&lengths(&problem.model))),
+                        SECTION_OF_FILE => {
+                            value(&incoming.message).and_then(|of| sent(section_of(&problem.model, of)))
                         }
                         _ => answer(&self.rank.bodies, &incoming, threads),
                     }));
@@ -129,7 +135,7 @@ impl Follower {
 fn begun(
     problem: &mut Problem,
     incoming: &Incoming,
-    (number, leads): (u64, Option<u64>),
+    (rank, number, leads): (usize, u64, Option<u64>),
     (called, answer): (Called, Option<Given>),
 ) -> Result<Vec<u8>> {
     let Begin { known, .. } = value(&incoming.message)?;
@@ -143,18 +149,19 @@ fn begun(
         answer,
         fits: false,
     };
-    let is_new = known != Some(Revised::of(&problem.model));
-    let told = match called.call {
+    let ready = match called.call {
         Call::RestoreState => problem.restorable(called.number as usize).map(|fits| begun.fits = fits),
-        Call::Setup | Call::Solve | Call::Check => check_part(&problem.model),
-        Call::SaveState | Call::OpenMotion | Call::Dependent | Call::Write | Call::Read => Ok(()),
+        Call::Setup | Call::Solve | Call::Check => ready_part(&mut problem.model, rank),
+        Call::Write => ready_part(&mut problem.model, rank).and_then(|()| problem.model.check_kept()),
+        Call::SaveState | Call::OpenMotion | Call::Dependent | Call::Read => Ok(()),
     };
-    let told = told.and_then(|()| is_new.then(|| Told::of(&problem.model)).transpose());
+    let is_new = known != Some(Revised::of(&problem.model));
+    let told = ready.and_then(|()| is_new.then(|| Told::of(&problem.model)).transpose());
     match told {
         Ok(told) => begun.told = told,
         Err(error) => begun.refused = Some(Failure(error)),
     }
-    if matches!(called.call, Call::Setup | Call::Solve | Call::Check) {
+    if matches!(called.call, Call::Setup | Call::Solve | Call::Check | Call::Write) {
         let start = problem.history().given_start();
         begun.values = Some(Values::of(&problem.model, start, problem.history.commits));
     }

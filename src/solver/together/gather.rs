@@ -10,10 +10,10 @@ use crate::gathering::{
     copies, gathered, refresh, shared, At, GivenAt, Order, Places, Revised, Told, Values, SECTION,
 };
 use crate::model::Revisions;
-use crate::ranks::{value, Request};
-use crate::solver::together::check_part;
+use crate::ranks::value;
 use crate::solver::together::leader::Leading;
 use crate::solver::together::messages::{Begun, PartTold, PartsTold, Touch, Touched, LOADS, NUMBERS, TOUCH};
+use crate::solver::together::ready_part;
 
 /// Names of what a rank keeps, from the first on.
 const BLOCK: u64 = 1 << 40;
@@ -36,9 +36,9 @@ impl Leading<'_> {
     /// The parts of all ranks, told now or before, and what changes without a new setup.
     fn told(&mut self, begun: Vec<(usize, Begun)>) -> Result<(Vec<Told>, Vec<Values>)> {
         let start = self.own.history().given_start();
+        ready_part(&mut self.own.model, 0).map_err(|e| e.rank(0))?;
         let model = &self.own.model;
         let before = self.leader.told.take().unwrap_or_default();
-        check_part(model).map_err(|e| e.rank(0))?;
         if let Some((rank, failure)) = begun.iter().find_map(|(rank, of)| Some((*rank, of.refused.clone()?)))
         {
             return Err(failure.0.rank(rank));
@@ -164,17 +164,17 @@ impl Leading<'_> {
     fn merge(&self, told: &[Told]) -> Result<Vec<(usize, Vec<usize>)>> {
         let mut numbers: Vec<usize> = self.own.model.unknowns.keys().copied().collect();
         numbers.sort_unstable();
-        let mut own = numbers.chunks(SECTION);
-        let found = shared(self.ranks.size, |rank| {
+        let mut own = numbers.chunks(SECTION).map(<[usize]>::to_vec);
+        let mut firsts = vec![Vec::new(); self.ranks.size];
+        firsts[0] = own.next().unwrap_or_default();
+        for (rank, section) in self.ask(NUMBERS, |_| ())? {
+            firsts[rank] = value(&section)?;
+        }
+        let found = shared(firsts, |rank| {
             if rank == 0 {
-                return Ok(own.next().unwrap_or_default().to_vec());
+                return Ok(own.next().unwrap_or_default());
             }
-            if !self.members.contains(&rank) {
-                return Ok(Vec::new());
-            }
-            let request = Request { rank, question: NUMBERS, put: Box::new(|_| {}) };
-            let mut answers = self.ranks.ask(vec![request])?.answers()?;
-            value(&answers.pop().ok_or_else(lost)?.map_err(|e| e.rank(rank))?)
+            self.ask_one(rank, NUMBERS, ())
         })?;
         let without = told.iter().position(|of| !of.glue);
         if let (Some((number, of)), Some(rank)) = (found.first(), without) {

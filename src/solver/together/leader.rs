@@ -13,7 +13,7 @@ use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::messages::{Begin, Begun, Call, Called, Finish, Given, BEGIN, FINISH};
 use crate::solver::together::split::Split;
-use crate::solver::together::{for_one_rank, panicked};
+use crate::solver::together::{for_one_rank, panicked, Brought};
 
 /// A call of all ranks, led by rank 0.
 pub(super) struct Leading<'a> {
@@ -30,7 +30,7 @@ pub(super) struct Leading<'a> {
 impl Leading<'_> {
     /// Leads the call; the other ranks hear of its end whatever happens. None if no other rank has a part: the problem of rank 0 is that
     /// of all.
-    pub fn lead(&mut self, problem: u64, called: Called, given: Option<Given>) -> Result<Option<Finish>> {
+    pub fn lead(&mut self, problem: u64, called: Called, brought: Brought) -> Result<Option<Finish>> {
         if self.ranks.is_closed() && self.leader.told.is_none() {
             return Ok(None);
         }
@@ -43,7 +43,7 @@ impl Leading<'_> {
         let ended = match refusal {
             None => together(leads, called, &begun).and_then(|()| {
                 // the others hear of a panic, too
-                catch_unwind(AssertUnwindSafe(|| self.led(called, begun, given)))
+                catch_unwind(AssertUnwindSafe(|| self.led(called, begun, brought)))
                     .unwrap_or_else(|_| Err(panicked(0)))
             }),
             Some(error) => Err(error),
@@ -69,6 +69,14 @@ impl Leading<'_> {
     ) -> Result<Vec<(usize, Vec<u8>)>> {
         let answers = self.asked(question, of)?.into_iter();
         answers.map(|(rank, answer)| Ok((rank, answer.map_err(|e| e.rank(rank))?))).collect()
+    }
+
+    /// Asks one rank.
+    pub(super) fn ask_one<A: Wire, T: Wire + 'static>(&self, rank: usize, question: u32, of: T) -> Result<A> {
+        let missing = || Error::new(Kind::Internal, "a rank did not answer");
+        let request = Request { rank, question, put: Box::new(move |to| of.put(to)) };
+        let answer = self.ranks.ask(vec![request])?.answers()?.pop().ok_or_else(missing)?;
+        value(&answer.map_err(|e| e.rank(rank))?)
     }
 
     fn asked<T: Wire + 'static>(
@@ -113,26 +121,22 @@ impl Leading<'_> {
     }
 
     /// What every rank gets, rank 0 first.
-    fn led(
-        &mut self,
-        called: Called,
-        begun: Vec<(usize, Begun)>,
-        given: Option<Given>,
-    ) -> Result<Vec<Finish>> {
+    fn led(&mut self, called: Called, begun: Vec<(usize, Begun)>, brought: Brought) -> Result<Vec<Finish>> {
         if let Some(lending) = &mut self.all.prepared.lending {
             lending.serve = self.leader.serve.clone().into();
             lending.serve[0] = true;
         }
         match called.call {
             Call::Setup | Call::Solve => self.solved(called.call, begun),
-            Call::Check => self.checked(begun, given),
+            Call::Check => self.checked(begun, brought.answer),
             Call::OpenMotion | Call::Dependent if !self.is_as_told(&begun) => {
                 let what = "what has been asked belongs to the last answer, and the problem has changed: solve first";
                 Err(Error::new(Kind::State, what))
             }
             Call::OpenMotion => self.open_motion(called.number as usize),
             Call::Dependent => self.dependent(),
-            Call::Write | Call::Read => Err(for_one_rank()),
+            Call::Write => self.written(begun, brought.path),
+            Call::Read => Err(for_one_rank()),
             Call::SaveState => {
                 self.save(called.number as usize);
                 Ok(self.each(|_| Finish::default()))
@@ -146,7 +150,7 @@ impl Leading<'_> {
     }
 
     /// Rank 0, then the others that have a part.
-    fn each(&self, end: impl FnMut(usize) -> Finish) -> Vec<Finish> {
+    pub(super) fn each(&self, end: impl FnMut(usize) -> Finish) -> Vec<Finish> {
         std::iter::once(0).chain(self.members.iter().copied()).map(end).collect()
     }
 

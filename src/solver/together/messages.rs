@@ -15,6 +15,9 @@ pub const NUMBERS: u32 = 3;
 pub const TOUCH: u32 = 4;
 pub const LOADS: u32 = 5;
 pub const FINISH: u32 = 6;
+/// Of a problem file: bytes of the sections of every body; one section of a body, by these numbers.
+pub const LENGTHS: u32 = 7;
+pub const SECTION_OF_FILE: u32 = 8;
 
 /// A call that all ranks make.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

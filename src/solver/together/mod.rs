@@ -2,6 +2,7 @@
 //! ranks answer until it has an end, and each gets what belongs to its own.
 
 mod failure;
+mod file;
 mod follower;
 mod gather;
 mod leader;
@@ -10,6 +11,7 @@ mod share;
 mod split;
 mod states;
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
@@ -46,6 +48,8 @@ impl Problem {
             may_lend.then(|| Lending::new(Arc::clone(ranks), cfg!(feature = "loopback")))
         };
         (self.prepared.lending, self.model.has_others) = (lending(), true);
+        // whether other ranks have bodies is not known on rank 0 yet
+        self.model.stays_whole = ranks.rank > 0;
         self.all = (ranks.rank == 0).then(|| {
             let mut all = Box::<Self>::default();
             all.prepared.lending = lending();
@@ -76,13 +80,13 @@ impl Problem {
 
     /// As `setup`, by all ranks; false if rank 0 is alone with its problem. So in what follows.
     pub(super) fn set_up_together(&mut self) -> Result<bool> {
-        Ok(self.together(Call::Setup, 0, None)?.is_some())
+        Ok(self.together(Call::Setup, 0, Brought::default())?.is_some())
     }
 
     pub(super) fn solve_together(&mut self) -> Result<Option<Report>> {
         let missing = || Error::new(Kind::Internal, "a solve of all ranks left nothing");
         let report = |problem: &Self| problem.report().cloned().ok_or_else(missing);
-        self.together(Call::Solve, 0, None)?.map(|_| report(self)).transpose()
+        self.together(Call::Solve, 0, Brought::default())?.map(|_| report(self)).transpose()
     }
 
     pub(super) fn check_together(&mut self, answer: Candidate) -> Result<Option<Certificate>> {
@@ -92,12 +96,15 @@ impl Problem {
         let Candidate { u, lambda, mu, tangential } = answer;
         let left = if self.model.settings.glue == 1 { left_over(&self.model, u)? } else { Vec::new() };
         let forces = [lambda, mu, tangential].map(<[f64]>::to_vec).into();
-        let end = self.together(Call::Check, 0, Some(Given { u: u.to_vec(), left, forces }))?;
+        let answer = Some(Given { u: u.to_vec(), left, forces });
+        let end = self.together(Call::Check, 0, Brought { answer, path: None })?;
         Ok(end.and_then(|end| end.certificate))
     }
 
     pub(super) fn open_motion_together(&mut self, k: usize) -> Result<Option<OpenMotion>> {
-        let Some(end) = self.together(Call::OpenMotion, k as u64, None)? else { return Ok(None) };
+        let Some(end) = self.together(Call::OpenMotion, k as u64, Brought::default())? else {
+            return Ok(None);
+        };
         let missing = || Error::new(Kind::Internal, "a motion of all ranks left nothing");
         let (v, body) = end.motion.ok_or_else(missing)?;
         let motion = body.and_then(|body| rigid_motion(&self.model, body, &v));
@@ -105,19 +112,13 @@ impl Problem {
     }
 
     pub(super) fn dependent_together(&mut self) -> Result<Option<Vec<usize>>> {
-        Ok(self.together(Call::Dependent, 0, None)?.map(|end| end.rows))
+        Ok(self.together(Call::Dependent, 0, Brought::default())?.map(|end| end.rows))
     }
 
-    /// Only rank 0 alone can write or read the problem.
-    pub(super) fn check_file_together(&mut self, writes: bool) -> Result<()> {
-        let call = if writes { Call::Write } else { Call::Read };
-        self.together(call, 0, None).map(drop)
-    }
-
-    fn together(&mut self, call: Call, number: u64, given: Option<Given>) -> Result<Option<Finish>> {
+    fn together(&mut self, call: Call, number: u64, brought: Brought) -> Result<Option<Finish>> {
         let Some(mut joined) = self.joined.take() else { return Ok(None) };
         let called = Called { call, number };
-        let ended = self.with_all(&mut joined, called, given);
+        let ended = self.with_all(&mut joined, called, brought);
         let taken = ended.and_then(|end| end.map(|end| self.take_end(end, called, &mut joined)).transpose());
         if call == Call::Solve && matches!(taken, Ok(None)) {
             joined.answered = None;
@@ -126,12 +127,7 @@ impl Problem {
         taken
     }
 
-    fn with_all(
-        &mut self,
-        joined: &mut Joined,
-        called: Called,
-        given: Option<Given>,
-    ) -> Result<Option<Finish>> {
+    fn with_all(&mut self, joined: &mut Joined, called: Called, brought: Brought) -> Result<Option<Finish>> {
         let Joined { rank, problem, role, .. } = joined;
         let (ranks, problem) = (&rank.ranks, *problem);
         let flag = self.host.canceller();
@@ -142,11 +138,13 @@ impl Problem {
                 let missing = || Error::new(Kind::Internal, "rank 0 has no problem of all ranks");
                 let mut all = self.all.take().ok_or_else(missing)?;
                 let mut leading = Leading { ranks, leader, own: self, all: &mut all, members: Vec::new() };
-                let ended = leading.lead(problem, called, given);
+                let ended = leading.lead(problem, called, brought);
                 self.all = Some(all);
                 ended
             }
-            Role::Follows(follower) => follower.follow(self, ranks, problem, (called, given)).map(Some),
+            Role::Follows(follower) => {
+                follower.follow(self, ranks, problem, (called, brought.answer)).map(Some)
+            }
         }
     }
 
@@ -170,6 +168,15 @@ impl Problem {
             None => Ok(end),
         }
     }
+}
+
+/// What the host gives in a call.
+#[derive(Default)]
+struct Brought<'a> {
+    /// An answer to be checked.
+    answer: Option<Given>,
+    /// The file to be written, on rank 0.
+    path: Option<&'a Path>,
 }
 
 /// The flag by which the host cancels the call on this rank, until it ends.
@@ -197,20 +204,15 @@ fn for_one_rank() -> Error {
     Error::new(Kind::Unsupported, what)
 }
 
-/// Refuses a part of the problem that lacks data, or that other ranks cannot solve with.
-fn check_part(model: &HostModel) -> Result<()> {
+/// Refuses a part of the problem that lacks data, or that rank 0 cannot ask about. Bodies that have been cut are whole from now on.
+fn ready_part(model: &mut HostModel, rank: usize) -> Result<()> {
     if model.bodies.is_empty() {
         return Ok(());
     }
     model.check_complete()?;
-    for (p, given) in model.bodies.iter().enumerate() {
-        let what = match (given.body.operator(), given.body.assembled()) {
-            (Some(_), _) => "a body given by functions",
-            (_, Some(_)) => "a body that is cut into pieces (option pieces = 1 leaves it whole)",
-            (None, None) => continue,
-        };
-        let what = format!("{what} cannot be solved together with bodies of other ranks yet");
+    if let Some(p) = model.bodies.iter().position(|given| rank > 0 && given.body.operator().is_some()) {
+        let what = "a body given by functions on another rank than 0 cannot be solved together with bodies of other ranks";
         return Err(Error::new(Kind::Unsupported, what).body(p));
     }
-    Ok(())
+    model.make_whole()
 }

@@ -6,17 +6,18 @@ use crate::solver::joined::{Role, SavedByAll};
 use crate::solver::problem::Problem;
 use crate::solver::together::leader::Leading;
 use crate::solver::together::messages::Call;
+use crate::solver::together::Brought;
 
 impl Problem {
     /// As `save_state`, by all ranks; false if rank 0 is alone with its problem.
     pub(in crate::solver) fn save_together(&mut self) -> Result<bool> {
         let number = self.history.saved as u64;
-        Ok(self.together(Call::SaveState, number, None)?.is_some())
+        Ok(self.together(Call::SaveState, number, Brought::default())?.is_some())
     }
 
     /// Whether the answer of a state is that of its data on all ranks; none if rank 0 is alone with its problem.
     pub(in crate::solver) fn restorable_together(&mut self, number: usize) -> Result<Option<bool>> {
-        Ok(self.together(Call::RestoreState, number as u64, None)?.map(|end| end.fits))
+        Ok(self.together(Call::RestoreState, number as u64, Brought::default())?.map(|end| end.fits))
     }
 
     /// The answer of a restored state.

@@ -31,7 +31,7 @@ fn node(dim: u64, normal: i64, coefficient: f64, s_old: f64) -> Vec<u8> {
 fn nodes_with_friction_come_back_bit_by_bit() {
     let problem = with_nodes();
     let bytes = problem.write_bytes().unwrap();
-    assert_eq!(bytes.len() as u64, crate::model::file::write::length(&problem.model));
+    assert_eq!(bytes.len() as u64, expected_length(&problem));
     let back = read(&bytes).unwrap();
     let (new, old) = (&back.model.friction, &problem.model.friction);
     assert_eq!((new.dim, &new.nodes), (old.dim, &old.nodes));

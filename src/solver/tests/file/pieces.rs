@@ -31,7 +31,7 @@ fn answer(problem: &mut Problem) -> Vec<u64> {
 fn a_body_that_is_cut_comes_back_as_its_pieces_and_solves_to_the_same_bits() {
     let mut problem = chain();
     let bytes = problem.write_bytes().unwrap();
-    assert_eq!(bytes.len() as u64, crate::model::file::write::length(&problem.model));
+    assert_eq!(bytes.len() as u64, expected_length(&problem));
     let mut back = read(&bytes).unwrap();
     assert_eq!(back.body_facts(0).unwrap().pieces, 3);
     assert_eq!(answer(&mut back), answer(&mut problem));

@@ -1,5 +1,6 @@
 //! Bodies and rows given on several ranks: the bits of one rank, whoever gives what.
 
+mod forms;
 mod mistakes;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,12 +33,17 @@ fn on_ranks<T: Send>(size: usize, host: impl Fn(usize, &mut Problem) -> T + Sync
 fn add_chain(problem: &mut Problem, p: usize) -> usize {
     let body = problem.add_body(N).unwrap();
     set_chains(problem, body, &[2.0 + (p % 3) as f64], p == 0);
+    number_chain(problem, body, p);
+    body
+}
+
+/// Numbers and load of chain p.
+fn number_chain(problem: &mut Problem, body: usize, p: usize) {
     let numbers: Vec<i64> = (0..N as i64).map(|i| 10 * p as i64 + i).collect();
     problem.set_numbering(body, &numbers).unwrap();
     let mut f = [0.0; N];
     (f[N - 1], f[1]) = (-1.0 - p as f64 / 8.0, 0.25);
     problem.set_load(body, &f).unwrap();
-    body
 }
 
 /// The begin of chain p rests on the end of the one before.
