@@ -8,6 +8,10 @@ mod liars;
 mod scales;
 mod soft;
 
+#[allow(dead_code)]
+#[path = "reference/case.rs"]
+mod reference;
+
 mod support {
     pub mod asked;
     pub mod face;

@@ -46,9 +46,10 @@ pub unsafe extern "C" fn feti_communicator_set(p: *mut feti_problem, by: *const 
         if instant(|| lock(&GIVEN).contains_key(&p.addr())) {
             return Err(Error::new(Kind::State, "the problem has its ranks already"));
         }
-        if let Some(functions) = table.functions {
-            problem.join(stream(&table, functions)?)?;
-        }
+        problem.join(match table.functions {
+            Some(functions) => stream(&table, functions)?,
+            None => Rank::new(Ranks::alone()),
+        })?;
         let given = Given { user: table.user, release: table.release, ranks: table.size };
         instant(|| lock(&GIVEN).insert(p.addr(), given));
         Ok(())

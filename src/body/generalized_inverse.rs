@@ -142,6 +142,17 @@ impl GeneralizedInverse {
         }
     }
 
+    /// Bytes of its factor; none if it is not here.
+    pub fn bytes(&self) -> Option<usize> {
+        match &self.factor {
+            Factor::Own(factor) => Some(factor.analysis.bytes()),
+            Factor::Rounded(rounded) => {
+                Some(rounded.factor.analysis.bytes().saturating_sub(self.bytes_saved()))
+            }
+            Factor::Elsewhere(_) | Factor::Host(_) => None,
+        }
+    }
+
     /// Rounds its factor to single precision, in `slabs`, if K allows it.
     pub fn rounded(mut self, k: &Multiple, slabs: &Slabs) -> Result<Self> {
         let rounded = match &self.factor {

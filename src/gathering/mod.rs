@@ -7,7 +7,7 @@ mod told;
 
 pub use numbers::{shared, SECTION};
 pub use places::{copies, At, Copies, Places};
-pub use told::{Revised, Told, Values};
+pub use told::{is_numbered, Revised, Told, Values};
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;

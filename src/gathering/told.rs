@@ -67,14 +67,19 @@ pub struct Values {
     pub start: Vec<Option<Vec<f64>>>,
     /// How often slips were committed.
     pub commits: u64,
+    /// Its options that differ from the defaults, without those that each rank has of its own.
+    pub options: String,
 }
+
+/// Options that each rank has of its own; for all others those of rank 0 count.
+const OF_EACH_RANK: [&str; 5] = ["threads", "memory_limit", "pieces", "glue", "index_base"];
 
 wire_struct!(Told { bodies, rows, dim, nodes, is_numbered, glue, revisions });
 wire_struct!(Revised { of, numberings });
 wire_struct!(BodyTold { order, numbers, revisions });
 wire_struct!(RowsTold { ptr, entries, rhs, compliance, cancelled });
 wire_struct!(Named { number, body, value });
-wire_struct!(Values { rhs, laws, start, commits });
+wire_struct!(Values { rhs, laws, start, commits, options });
 wire_struct!(Revisions { bodies, rows, laws });
 wire_struct!(BodyRevisions { analysed, stiffness, motions });
 wire_struct!(FrictionNode { normal, first, count, coefficient, bound });
@@ -155,7 +160,13 @@ fn rows(model: &HostModel, rows: &RowSet) -> RowsTold {
 impl Values {
     /// Of a rank that has no part.
     pub fn nothing() -> Self {
-        Self { rhs: vec![Vec::new(); 3], laws: Vec::new(), start: vec![None; 3], commits: 0 }
+        Self {
+            rhs: vec![Vec::new(); 3],
+            laws: Vec::new(),
+            start: vec![None; 3],
+            commits: 0,
+            options: String::new(),
+        }
     }
 
     /// `start`: start values of the host.
@@ -165,8 +176,14 @@ impl Values {
             laws: model.friction.nodes.iter().map(|node| (node.coefficient, node.bound)).collect(),
             start,
             commits,
+            options: options(model),
         }
     }
+}
+
+fn options(model: &HostModel) -> String {
+    let is_told = |option: &&str| !OF_EACH_RANK.contains(&option.split('=').next().unwrap_or_default());
+    model.settings.changes().split_whitespace().filter(is_told).collect::<Vec<_>>().join(" ")
 }
 
 impl RowsTold {

@@ -130,9 +130,9 @@ impl Prepared {
     }
 
     /// K+ of the present body, if made.
-    pub fn inverse(&self, model: &SolvedModel, body: usize) -> Option<&Inverse> {
+    pub fn inverse(&self, model: &SolvedModel, body: usize) -> Option<&Arc<Inverse>> {
         let own = self.bodies.get(body).filter(|own| own.of == model.bodies[body].revisions);
-        own?.inverse.as_deref()
+        own?.inverse.as_ref()
     }
 
     /// Drops data of old revisions, except data that can be reused.

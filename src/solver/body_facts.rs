@@ -6,8 +6,8 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::Symmetric;
 use crate::mesh::Mesh;
 use crate::platform::memory::{filled, headroom, zeros};
-use crate::setup::{Duals, Inverse};
 use crate::solver::decomposed::null_space_of;
+use crate::solver::made::MadePart;
 use crate::solver::problem::Problem;
 
 /// Where the null space of a body comes from.
@@ -89,23 +89,17 @@ impl Problem {
         let (k, cut) = (given.body.stiffness.as_deref(), given.body.assembled().map(|k| &**k));
         let known = k.is_some() || cut.is_some();
         let components = known.then(|| self.components(body)).transpose()?.map(|(_, number)| number);
+        let made = self.made(body);
         let origin = match (&given.body.null_space, &given.body.coordinates) {
             (Some(r), _) if r.modes == Modes::Candidates => Origin::Candidates,
             (Some(_), _) => Origin::Given,
             // coordinates were given that do not fit K
-            (None, _)
-                if self.inverses(body).any(|of| of.kplus.misfit.is_some() && of.kplus.gap.is_some()) =>
-            {
+            (None, _) if made.iter().any(|of| of.kplus().misfit.is_some() && of.kplus().gap.is_some()) => {
                 Origin::Found
             }
             (None, Some(_)) => Origin::Coordinates,
             (None, None) => Origin::Found,
         };
-        let operator = self.prepared.duals(&self.model).map(|Duals { operators, .. }| {
-            let mut parts = self.parts_of(body);
-            let explicit = parts.clone().all(|part| !operators.implicit[part]);
-            explicit.then(|| parts.by_ref().map(|part| operators.sizes[part].bytes(false)).sum())
-        });
         Ok(BodyFacts {
             unknowns: n,
             entries: given.form.as_ref().map(|form| form.entries(n)),
@@ -115,39 +109,32 @@ impl Problem {
             borrowed: k.map_or([false; 2], |k| [k.val.is_of_host(), k.col.is_of_host()]),
             origin,
             factors: self.factors_of(body),
-            operator,
+            operator: self.operator_of(body),
             force_error: self.current().map(|current| current.answer.force_errors[body]),
         })
     }
 
     fn factors_of(&self, body: usize) -> Option<Factors> {
-        let address = |p: usize| self.inverses(p).map(|of| of.kplus.factor_address()).collect::<Vec<_>>();
-        let (is_cut, own) = (self.model.bodies[body].body.assembled().is_some(), address(body));
+        let address =
+            |p: usize| self.made(p).iter().map(|of| of.kplus().factor_address()).collect::<Vec<_>>();
+        let (is_cut, own, made) =
+            (self.model.bodies[body].body.assembled().is_some(), address(body), self.made(body));
         if own.is_empty() {
             return None;
         }
         let null_space = match is_cut {
-            false => self.inverses(body).map(|of| of.kplus.motions()).sum(),
+            false => made.iter().map(|of| of.kplus().motions()).sum(),
             true => null_space_of(&self.prepared, self.parts()?, body)?.cols,
         };
         let others = 0..self.model.bodies.len();
         Some(Factors {
             null_space,
-            gap: self.inverses(body).filter_map(|of| of.kplus.gap.filter(|_| !is_cut)).reduce(f64::min),
-            doubts: self.inverses(body).filter_map(|of| of.kplus.doubt).collect(),
-            entries: self.inverses(body).map(|of| of.kplus.entries()).sum(),
-            bytes: self.inverses(body).map(|of| of.bytes).sum(),
+            gap: made.iter().filter_map(|of| of.kplus().gap.filter(|_| !is_cut)).reduce(f64::min),
+            doubts: made.iter().filter_map(|of| of.kplus().doubt).collect(),
+            entries: made.iter().map(|of| of.kplus().entries()).sum(),
+            bytes: made.iter().map(MadePart::bytes).sum(),
             shared_with: others.clone().find(|&p| !is_cut && p != body && address(p) == own),
         })
-    }
-
-    /// K+ of the parts of a body, if already made.
-    pub(super) fn inverses(&self, body: usize) -> impl Iterator<Item = &Inverse> + '_ {
-        let solved = self.solved();
-        let now = solved.bodies.get(self.parts_of(body).start).map(|given| given.revisions);
-        let current = now == Some(self.model.bodies[body].revisions);
-        let parts = self.parts_of(body).filter(move |_| current);
-        parts.filter_map(|part| self.prepared.inverse(self.solved(), part))
     }
 
     /// The piece of every unknown of a body, the first if there are several; 0 in a body that is not cut.

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use crate::decomposition::{Connected, Decomposition};
 use crate::gathering::{Order, Revised, Told};
-use crate::model::Revisions;
+use crate::model::{BodyRevisions, Revisions};
 use crate::serving::Rank;
 use crate::solve::Answer;
+use crate::solver::made::BodyMade;
 
 /// The part of this rank in a problem of several.
 pub struct Joined {
@@ -28,6 +29,8 @@ pub enum Role {
 #[derive(Default)]
 pub struct Leader {
     pub order: Arc<Order>,
+    /// Of every body of rank 0 its number in that order.
+    pub own: Vec<usize>,
     /// What each rank has told last; none: nothing is known.
     pub told: Option<Vec<Told>>,
     /// The revisions from which the problem of all ranks has been made.
@@ -57,13 +60,22 @@ pub struct Follower {
     pub connected: Connected,
     /// The parts of its bodies.
     pub parts: Option<Decomposition>,
+    /// What rank 0 has made of each of its bodies, by the revisions of their data.
+    pub made: Vec<(BodyRevisions, BodyMade)>,
     /// Its numbers, ascending, and how many of them rank 0 has, during a call.
     pub numbers: Option<(Vec<usize>, usize)>,
 }
 
 impl Follower {
     pub fn new(rank: Arc<Rank>) -> Self {
-        Self { rank, leads: None, connected: Connected::default(), parts: None, numbers: None }
+        Self {
+            rank,
+            leads: None,
+            connected: Connected::default(),
+            parts: None,
+            made: Vec::new(),
+            numbers: None,
+        }
     }
 }
 

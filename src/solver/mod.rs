@@ -10,6 +10,7 @@ mod input;
 mod joined;
 mod joints;
 mod known;
+mod made;
 mod noticed;
 mod problem;
 mod products;

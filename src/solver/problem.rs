@@ -35,7 +35,7 @@ pub struct Problem {
     pub(super) prepared: Prepared,
     pub(super) history: History,
     pub(super) findings: Option<Findings>,
-    method: Option<&'static dyn DualMethod>,
+    pub(super) method: Option<&'static dyn DualMethod>,
     pub(super) host: Host,
     phases: Phases,
     /// Processor seconds of the last setup or solve that the thread of the call has led; none without other ranks.
@@ -205,10 +205,7 @@ impl Problem {
     /// Processor seconds of the last setup or solve in which the thread of the call did neither work of bodies here nor wait; none without
     /// other ranks.
     pub fn seconds_leading(&self) -> Option<f64> {
-        match &self.all {
-            Some(all) if self.check_alone().is_err() => all.leading,
-            _ => self.leading,
-        }
+        self.of_all().leading
     }
 
     /// What has been exchanged with other ranks, by all problems that share their stream of messages.
@@ -243,17 +240,18 @@ impl Problem {
         if let Some(report) = self.report().filter(|_| self.is_answered_together()) {
             return report.phases.clone();
         }
-        self.prepared.phases(&self.model, &self.phases)
+        let of = self.of_all();
+        of.prepared.phases(&of.model, &of.phases)
     }
 
-    /// Work of all setups so far.
+    /// Work of all setups so far; on rank 0 of those of all ranks.
     pub fn work(&self) -> Work {
-        self.prepared.work
+        self.of_all().prepared.work
     }
 
     /// Reserves memory for setup, solve and check while the result is kept; data out of date are dropped first.
     pub fn working_headroom(&mut self) -> Result<Headroom> {
-        if self.check_alone().is_err() {
+        if self.is_of_several() {
             return self.prepared.working_headroom(&self.model);
         }
         self.follow();
@@ -262,8 +260,8 @@ impl Problem {
 
     /// As `working_headroom`, for a call that only needs the setup; none if the setup exists.
     pub fn setup_headroom(&mut self) -> Result<Option<Headroom>> {
-        if self.check_alone().is_err() {
-            return self.prepared.working_headroom(&self.model).map(Some);
+        if self.is_of_several() {
+            return Ok(None);
         }
         self.follow();
         self.prepared.setup_headroom(solved(&self.model, &self.decomposition))

@@ -6,18 +6,28 @@ use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Operator};
 use crate::platform::memory::zeros;
-use crate::setup::{Inverse, Island};
+use crate::setup::Island;
 use crate::solve::local::{FromLoad, Scale};
 use crate::solve::Case;
 use crate::solver::decomposed::null_space_of;
+use crate::solver::joined::Role;
+use crate::solver::made::MadePart;
 use crate::solver::problem::Problem;
 
 impl Problem {
-    /// The parts of a body and their K+, after a setup; a body that is cut is refused.
-    fn set_up_parts(&mut self, body: usize) -> Result<Vec<(usize, &Inverse)>> {
+    /// The parts of a body and their K+, after a setup; a body that is cut is refused. Of a problem of several ranks only a call of all
+    /// makes the setup.
+    fn set_up_parts(&mut self, body: usize) -> Result<Vec<MadePart<'_>>> {
         self.check_whole_body(body)?;
-        self.set_up_alone()?;
-        Ok(self.parts_of(body).zip(self.inverses(body)).collect())
+        if self.check_alone().is_ok() {
+            self.setup()?;
+        }
+        let made = self.made(body);
+        if made.is_empty() {
+            let what = "K+ of this body has not been made on this rank: feti_setup, on all ranks, makes it";
+            return Err(Error::new(Kind::State, what).body(body));
+        }
+        Ok(made)
     }
 
     /// Sets up what only a rank that has the whole problem can give.
@@ -25,11 +35,6 @@ impl Problem {
         self.check_alone()?;
         self.setup()?;
         self.check_alone()
-    }
-
-    /// Unknown i of a part within its body.
-    fn place(&self, part: usize, i: usize) -> usize {
-        self.parts().map_or(i, |parts| parts.place(part, i).0)
     }
 
     /// Dimension r of the null space of a body and its basis as the library uses it: n x r column-major, part after part,
@@ -42,19 +47,17 @@ impl Problem {
             let missing = || Error::new(Kind::Internal, "the setup left a body without null space");
             return basis.map(|basis| (basis.cols, Cow::from(&basis.data))).ok_or_else(missing);
         }
-        self.set_up_parts(body)?;
+        let parts = self.set_up_parts(body)?;
         let mut all = Matrix::zeros(order, 0)?;
-        for (part, inverse) in self.parts_of(body).zip(self.inverses(body)) {
-            let own = inverse.kplus.bring_null_space()?;
+        for part in &parts {
+            let own = part.kplus().bring_null_space()?;
             if own.rows == order {
-                return Ok(match own {
-                    Cow::Borrowed(own) => (own.cols, Cow::from(&own.data)),
-                    Cow::Owned(own) => (own.cols, Cow::from(own.data)),
-                });
+                let own = own.into_owned();
+                return Ok((own.cols, Cow::from(own.data)));
             }
             for j in 0..own.cols {
                 let mut column = zeros(order, "a null space")?;
-                own.col(j).iter().enumerate().for_each(|(i, v)| column[self.place(part, i)] = *v);
+                own.col(j).iter().enumerate().for_each(|(i, v)| column[part.place(i)] = *v);
                 all.push_col(&column);
             }
         }
@@ -68,7 +71,7 @@ impl Problem {
             return Ok(None);
         }
         let parts = self.set_up_parts(body)?;
-        Ok(parts.into_iter().filter_map(|(_, inverse)| inverse.kplus.gap).reduce(f64::min))
+        Ok(parts.iter().filter_map(|part| part.kplus().gap).reduce(f64::min))
     }
 
     /// The r dofs held in K+ of (14)-(15), part after part; not known for a K+ of the host.
@@ -77,25 +80,22 @@ impl Problem {
             let what = "K+ of this body is given by the host: its fixing dofs are not known";
             return Err(Error::new(Kind::Unsupported, what).body(body));
         }
-        self.set_up_parts(body)?;
-        let parts = self.parts_of(body).zip(self.inverses(body));
-        let held = |(part, of): (usize, &Inverse)| -> Vec<usize> {
-            of.kplus.fixing.iter().map(|&i| self.place(part, i)).collect()
-        };
-        Ok(parts.flat_map(held).collect())
+        let parts = self.set_up_parts(body)?;
+        let held = |part: &MadePart| part.kplus().fixing.iter().map(|&i| part.place(i)).collect::<Vec<_>>();
+        Ok(parts.iter().flat_map(held).collect())
     }
 
     /// `y = K_p+ x`, x force, y length; 0 at unknowns without stiffness that belong to no part.
     pub fn kplus(&mut self, body: usize, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.model.check_length(body, "n", x.len())?;
         self.model.check_length(body, "n", y.len())?;
-        self.set_up_parts(body)?;
+        let parts = self.set_up_parts(body)?;
         let mut all = zeros(y.len(), "a product with K+")?;
-        for (part, inverse) in self.parts_of(body).zip(self.inverses(body)) {
-            let places = || (0..inverse.kplus.order()).map(|i| self.place(part, i));
+        for part in &parts {
+            let places = || (0..part.kplus().order()).map(|i| part.place(i));
             let mut own: Vec<f64> = places().map(|i| x[i]).collect();
-            inverse.kplus.apply_in_place(&mut own)?;
-            places().zip(&own).for_each(|(i, v)| all[i] = v / inverse.unit);
+            part.kplus().apply_in_place(&mut own)?;
+            places().zip(&own).for_each(|(i, v)| all[i] = v / part.inverse.unit);
         }
         y.copy_from_slice(&all);
         Ok(())
@@ -108,6 +108,13 @@ impl Problem {
         self.check_rows(y.len())?;
         self.check_nothing_cut()?;
         self.set_up_alone()?;
+        if let Some((all, rows)) = self.in_order() {
+            let own: Vec<f64> = rows.iter().map(|row| x[*row]).collect();
+            let mut image = zeros(own.len(), "a product with F")?;
+            all.dual_apply(&own, &mut image)?;
+            rows.into_iter().zip(image).for_each(|(row, v)| y[row] = v);
+            return Ok(());
+        }
         let compliance = self.model.contact.compliance.iter().chain(&*self.model.equalities.compliance);
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
         let contact = self.model.contact.len();
@@ -128,6 +135,12 @@ impl Problem {
         self.check_rows(d.len())?;
         self.check_nothing_cut()?;
         self.set_up_alone()?;
+        if let Some((all, rows)) = self.in_order() {
+            let mut lengths = zeros(rows.len(), "the load of the dual problem")?;
+            all.dual_rhs(&mut lengths)?;
+            rows.into_iter().zip(lengths).for_each(|(row, v)| d[row] = v);
+            return Ok(());
+        }
         let gaps = self.model.contact.rhs.iter().chain(&self.model.equalities.rhs);
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
         let contact = self.model.contact.len();
@@ -142,6 +155,18 @@ impl Problem {
             }
         }
         Ok(())
+    }
+
+    /// The problem in the order of several ranks, if the only one solves it so, and for each row there its number here, contact rows first.
+    fn in_order(&mut self) -> Option<(&mut Self, Vec<usize>)> {
+        let Some(Role::Leads(leader)) = self.joined.as_deref().map(|joined| &joined.role) else {
+            return None;
+        };
+        leader.told.as_ref()?;
+        let (contact, [inequalities, equalities, _]) = (self.model.contact.len(), &leader.order.rows);
+        let equalities = equalities.iter().map(|at| contact + at.number);
+        let rows = inequalities.iter().map(|at| at.number).chain(equalities).collect();
+        Some((self.all.as_deref_mut()?, rows))
     }
 
     /// F is not available if bodies are cut or glued: it would be F of the pieces, including rows of the glue.

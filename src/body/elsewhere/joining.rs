@@ -70,7 +70,7 @@ impl Elsewhere {
                 (Some(new), Some(Arc::new(FormElsewhere { token, order, explicit })))
             }
         };
-        let (member, kplus) = (member.number, self.name());
+        let (member, kplus) = (member.number, self.number());
         let join = Join { member, kplus, form: new, rows: Arc::clone(rows), by, of };
         Joining { asking: Asking::new(self.rank(), Name::Join, join), form }
     }

@@ -51,7 +51,7 @@ impl Elsewhere {
 
     /// `R_p`, n x r.
     pub fn null_space(&self) -> Result<Matrix> {
-        let of = NullSpace { kplus: self.name() };
+        let of = NullSpace { kplus: self.number() };
         alone(&self.kplus, Asking::new(self.rank(), Name::NullSpace, of))
     }
 
@@ -60,20 +60,21 @@ impl Elsewhere {
         self.kplus.rank
     }
 
-    pub(super) fn name(&self) -> u64 {
+    /// Its name there.
+    pub fn number(&self) -> u64 {
         self.kplus.number
     }
 
     /// The question for S_b of these dofs, to be kept there, and what stands for it here.
     pub fn boundary(&self, inside: Inside, scale: f64, dofs: Vec<usize>) -> (Asking, FormElsewhere) {
         let (token, order) = (self.kplus.ranks.token(self.rank()), dofs.len());
-        let of = Boundary { kplus: self.name(), form: token.number, inside, scale, dofs };
+        let of = Boundary { kplus: self.number(), form: token.number, inside, scale, dofs };
         (Asking::new(self.rank(), Name::Boundary, of), FormElsewhere { token, order, explicit: true })
     }
 
     /// The question for `K+ x`; not `exact`: by the factor alone.
     pub fn solving(&self, exact: bool, x: Vec<f64>) -> Asking {
-        Asking::new(self.rank(), Name::Solve, Solve { kplus: self.name(), exact, x })
+        Asking::new(self.rank(), Name::Solve, Solve { kplus: self.number(), exact, x })
     }
 
     /// Asks questions about several bodies.

@@ -84,6 +84,11 @@ impl Bodies {
         self.store.keep(name, RwLock::new(HostLoad(load)));
     }
 
+    /// A K+ that was made here, if rank 0 still has it.
+    pub fn kplus_named(&self, name: u64) -> Option<Arc<GeneralizedInverse>> {
+        self.kplus(name).ok().map(|with| Arc::clone(&with.kplus))
+    }
+
     /// What rank 0 no longer has goes.
     pub fn forget(&self, names: &[u64]) {
         self.store.forget(names);

@@ -121,7 +121,7 @@ impl PlanAway {
     pub fn factorising(&self, symbolic: &Token, of: Option<&Elsewhere>, rounded: bool) -> (Asking, NewKplus) {
         let new = NewKplus { kplus: self.token(), further: self.token() };
         let [kplus, further] = [&new.kplus, &new.further].map(|token| token.number);
-        let (plan, symbolic, of) = (self.name.number, symbolic.number, of.map(Elsewhere::name));
+        let (plan, symbolic, of) = (self.name.number, symbolic.number, of.map(Elsewhere::number));
         let of = Factorise { kplus, plan, symbolic, further, of, rounded };
         (Asking::new(self.name.rank, Name::Factorise, of), new)
     }

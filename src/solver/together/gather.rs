@@ -10,6 +10,7 @@ use crate::gathering::{
     copies, gathered, refresh, shared, At, GivenAt, Order, Places, Revised, Told, Values, SECTION,
 };
 use crate::model::Revisions;
+use crate::progress::LogLevel;
 use crate::ranks::value;
 use crate::solver::together::leader::Leading;
 use crate::solver::together::messages::{Begun, PartTold, PartsTold, Touch, Touched, LOADS, NUMBERS, TOUCH};
@@ -57,7 +58,20 @@ impl Leading<'_> {
             values[rank] = of.values.ok_or_else(lost)?;
         }
         check_commits(&values)?;
+        self.tell_other_options(&values)?;
         Ok((told, values))
+    }
+
+    /// Notes ranks whose options differ from those of rank 0.
+    fn tell_other_options(&self, values: &[Values]) -> Result<()> {
+        let said = |options: &str| if options.is_empty() { "none" } else { options }.to_owned();
+        for rank in self.members.iter().filter(|rank| values[**rank].options != values[0].options) {
+            let [own, other] = [0, *rank].map(|rank| said(&values[rank].options));
+            self.own.host.log.say(LogLevel::Result, || {
+                format!("note: the options of rank 0 count ({own}); rank {rank} has others ({other})")
+            })?;
+        }
+        Ok(())
     }
 
     /// Start values of the host: those of ranks that have given none are 0.
@@ -102,6 +116,10 @@ impl Leading<'_> {
         if self.leader.expected.take().is_some_and(|expected| expected.rows != order.rows) {
             self.all.history().previous = None;
         }
+        let own = order.bodies.iter().zip(0..).filter(|(at, _)| at.rank == 0);
+        let mut own: Vec<(&At, usize)> = own.collect();
+        own.sort_unstable();
+        self.leader.own = own.into_iter().map(|(_, body)| body).collect();
         (self.leader.order, self.leader.made_from, self.leader.shared) = (Arc::new(order), now, shared);
         Ok(())
     }

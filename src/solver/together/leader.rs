@@ -5,10 +5,11 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
-use crate::gathering::{At, Order, Revised};
+use crate::gathering::{is_numbered, At, Order, Revised};
 use crate::ranks::{value, Ranks, Request, Wire};
 use crate::solver::check::Candidate;
 use crate::solver::joined::Leader;
+use crate::solver::made::BodyMade;
 use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::messages::{Begin, Begun, Call, Called, Finish, Given, BEGIN, FINISH};
@@ -36,7 +37,7 @@ impl Leading<'_> {
         }
         let (begun, refusal) = self.begin(problem, called)?;
         self.members = begun.iter().map(|(rank, _)| *rank).collect();
-        if begun.is_empty() && refusal.is_none() {
+        if begun.is_empty() && refusal.is_none() && !self.puts_in_order(called.call) {
             return Ok(None);
         }
         let leads = self.pair(problem, &begun).then_some(problem);
@@ -59,6 +60,16 @@ impl Leading<'_> {
         let mut ends = ends.into_iter();
         self.ask(FINISH, |_| Finish { leads, ..ends.next().unwrap_or_default() })?;
         Ok(Some(own))
+    }
+
+    /// One rank alone, which other ranks might have shared the problem with, solves it in the order that it has on several. If a body is
+    /// cut, which it is not on several ranks, the order remains that of the host.
+    fn puts_in_order(&mut self, call: Call) -> bool {
+        let model = &self.own.model;
+        let is_cut = model.bodies.iter().any(|given| given.body.assembled().is_some());
+        let orders = self.ranks.size == 1 && call != Call::Read && is_numbered(model) && !is_cut;
+        self.leader.told.take_if(|_| !orders);
+        orders
     }
 
     /// Asks the ranks that have a part; each with its answer.
@@ -84,6 +95,9 @@ impl Leading<'_> {
         question: u32,
         mut of: impl FnMut(usize) -> T,
     ) -> Result<Vec<(usize, Result<Vec<u8>>)>> {
+        if self.members.is_empty() {
+            return Ok(Vec::new());
+        }
         let request = |&rank: &usize| {
             let of = of(rank);
             Request { rank, question, put: Box::new(move |to| of.put(to)) }
@@ -156,6 +170,7 @@ impl Leading<'_> {
 
     fn solved(&mut self, call: Call, begun: Vec<(usize, Begun)>) -> Result<Vec<Finish>> {
         self.gather(begun)?;
+        self.all.method = self.own.method;
         std::mem::swap(&mut self.all.host, &mut self.own.host);
         let ended = match call {
             Call::Setup => self.all.setup(),
@@ -168,9 +183,16 @@ impl Leading<'_> {
         let failure = ended.err().map(|error| Failure(split.error(error)));
         Ok(self.each(|rank| Finish {
             failure: failure.clone(),
+            made: self.made(&split, rank),
             share: all.findings.as_ref().map(|findings| split.share(rank, answer, findings)),
             ..Finish::default()
         }))
+    }
+
+    /// What has been made of the bodies of another rank.
+    fn made(&self, split: &Split, rank: usize) -> Option<Vec<BodyMade>> {
+        self.all.prepared.duals(&self.all.model)?;
+        (rank > 0).then(|| split.own_bodies_of(rank).iter().map(|body| self.all.told_of(*body)).collect())
     }
 
     fn checked(&mut self, mut begun: Vec<(usize, Begun)>, given: Option<Given>) -> Result<Vec<Finish>> {
@@ -188,7 +210,7 @@ impl Leading<'_> {
         std::mem::swap(&mut self.all.host, &mut self.own.host);
         let split = Split::new(&self.leader.order, &self.all.model, self.ranks.size, None)?;
         let certificate = Some(split.certificate(&checked.map_err(|error| split.error(error))?));
-        Ok(self.each(|_| Finish { certificate, ..Finish::default() }))
+        Ok(self.each(|rank| Finish { certificate, made: self.made(&split, rank), ..Finish::default() }))
     }
 
     fn open_motion(&mut self, k: usize) -> Result<Vec<Finish>> {

@@ -6,6 +6,7 @@ use crate::body::{wire_struct, Facts};
 use crate::certificate::Certificate;
 use crate::gathering::{Copies, Revised, Told, Values};
 use crate::ranks::wire_enum;
+use crate::solver::made::BodyMade;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::share::Share;
 
@@ -120,6 +121,8 @@ pub struct Finish {
     pub leads: Option<u64>,
     pub failure: Option<Failure>,
     pub share: Option<Share>,
+    /// What has been made of the bodies of this rank, if a setup is done.
+    pub made: Option<Vec<BodyMade>>,
     /// Of a check.
     pub certificate: Option<Certificate>,
     /// An open motion on the bodies of this rank, and its fastest body, if this rank has it.
@@ -140,4 +143,5 @@ wire_struct!(Touched { copies, bodies });
 wire_struct!(PartsTold { parts, loose });
 wire_struct!(PartTold { order, dofs, facts });
 wire_struct!(Facts { entries, largest, length, last_digit, keys });
-wire_struct!(Finish { leads, failure, share, certificate, motion, rows, fits });
+wire_struct!(BodyMade { kplus, operator });
+wire_struct!(Finish { leads, failure, share, made, certificate, motion, rows, fits });

@@ -66,16 +66,30 @@ impl Problem {
         answered == Some(self.model.revisions)
     }
 
-    /// The problem is solved on several ranks: what is asked is not known on one of them.
+    /// The problem is solved in the order of several ranks.
+    pub(super) fn is_of_several(&self) -> bool {
+        self.joined.as_ref().is_some_and(|joined| match &joined.role {
+            Role::Leads(leader) => leader.told.is_some() || leader.paired.contains(&true),
+            Role::Follows(_) => true,
+        })
+    }
+
+    /// What this rank solves: on rank 0 the problem of all ranks, if several have a part of it.
+    pub(super) fn of_all(&self) -> &Self {
+        self.all.as_deref().filter(|_| self.is_of_several()).unwrap_or(self)
+    }
+
+    /// Other ranks have a part of the problem: what is asked is not known on one of them.
     pub(super) fn check_alone(&self) -> Result<()> {
-        let is_alone = self.joined.as_ref().is_none_or(|joined| match &joined.role {
-            Role::Leads(leader) => leader.told.is_none(),
-            Role::Follows(_) => false,
-        });
-        if is_alone {
-            return Ok(());
+        match self.is_of_several() && !self.is_only_rank() {
+            true => Err(for_one_rank()),
+            false => Ok(()),
         }
-        Err(for_one_rank())
+    }
+
+    /// There are no other ranks.
+    pub(super) fn is_only_rank(&self) -> bool {
+        self.joined.as_ref().is_none_or(|joined| joined.rank.ranks.size == 1)
     }
 
     /// As `setup`, by all ranks; false if rank 0 is alone with its problem. So in what follows.
@@ -162,6 +176,10 @@ impl Problem {
                 self.history().keep(answer, 0);
                 joined.answered = Some(self.model.revisions);
             }
+        }
+        if let (Some(made), Role::Follows(follower)) = (end.made.take(), &mut joined.role) {
+            let revisions = self.model.bodies.iter().map(|given| given.revisions);
+            follower.made = revisions.zip(made).collect();
         }
         match end.failure.take() {
             Some(failure) => Err(failure.0),

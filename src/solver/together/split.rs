@@ -124,6 +124,11 @@ impl<'a> Split<'a> {
         own.flat_map(|body| &all[self.model.range(*body)]).copied().collect()
     }
 
+    /// The bodies of a rank, in the order of their numbers there.
+    pub fn own_bodies_of(&self, rank: usize) -> &[usize] {
+        &self.own[rank].bodies
+    }
+
     /// The number of a body on this rank.
     pub fn own_body(&self, rank: usize, body: usize) -> Option<usize> {
         Some(self.body(body)).filter(|at| at.rank == rank).map(|at| at.number)

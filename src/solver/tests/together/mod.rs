@@ -1,6 +1,7 @@
 //! Bodies and rows given on several ranks: the bits of one rank, whoever gives what.
 
 mod forms;
+mod made;
 mod mistakes;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -204,6 +205,9 @@ fn the_log_on_rank_0_names_rows_and_failed_bodies_by_rank_and_number() {
             problem.add_rows(RowKind::Inequality, rows).unwrap();
         }
         let heard = Arc::clone(&lines);
+        if rank == 2 {
+            problem.set_text("tolerance=1e-9 threads=1").unwrap();
+        }
         problem.on_log(Some((
             LogLevel::Phase,
             Box::new(move |_, line: &str| {
@@ -218,5 +222,9 @@ fn the_log_on_rank_0_names_rows_and_failed_bodies_by_rank_and_number() {
     let lines = lines.lock().unwrap();
     assert!(lines.contains("most in row 1 of rank 1: c = -5.0e-1"), "{lines}");
     assert!(lines.contains("rank 2, body 0") || lines.contains("rank 1, body 0"), "{lines}");
+    assert!(
+        lines.contains("the options of rank 0 count (none); rank 2 has others (tolerance=1e-9)"),
+        "{lines}"
+    );
     assert_eq!(lines.matches("3 bodies, 15 unknowns").count(), 1, "rank 0 alone tells: {lines}");
 }

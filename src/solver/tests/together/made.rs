@@ -1,0 +1,80 @@
+//! K+, null spaces and facts of bodies on the rank that has given them.
+
+use super::{add_row, bits, number_chain, on_ranks, N};
+use crate::error::Kind;
+use crate::solver::tests::lent::set_chains;
+use crate::solver::{BodyFacts, Problem};
+
+const COUNT: usize = 5;
+
+/// As a chain; the even ones but for the first in two parts.
+fn add(problem: &mut Problem, p: usize) {
+    if p == 0 || p % 2 == 1 {
+        super::add_chain(problem, p);
+        return;
+    }
+    let body = problem.add_body(2 * N).unwrap();
+    set_chains(problem, body, &[2.0, 5.0], false);
+    let numbers: Vec<i64> = (0..2 * N as i64).map(|i| 10 * p as i64 + i).collect();
+    problem.set_numbering(body, &numbers).unwrap();
+}
+
+/// What a host can ask of a body after a setup.
+#[derive(Debug, PartialEq)]
+struct Asked {
+    null_space: (usize, Vec<u64>),
+    fixing: Vec<usize>,
+    gap: Option<u64>,
+    kplus: Vec<u64>,
+    facts: BodyFacts,
+}
+
+fn asked(problem: &mut Problem, body: usize) -> Asked {
+    let n = problem.order(body).unwrap();
+    let (x, mut y) = ((0..n).map(|i| 1.0 + (i * i) as f64).collect::<Vec<_>>(), vec![0.0; n]);
+    problem.kplus(body, &x, &mut y).unwrap();
+    let mut facts = problem.body_facts(body).unwrap();
+    // a number of the rank
+    facts.factors.as_mut().unwrap().shared_with = None;
+    let (r, basis) = problem.null_space(body).unwrap();
+    let null_space = (r, bits(&basis));
+    Asked {
+        null_space,
+        fixing: problem.fixing_dofs(body).unwrap(),
+        gap: problem.null_space_gap(body).unwrap().map(f64::to_bits),
+        kplus: bits(&y),
+        facts,
+    }
+}
+
+#[test]
+fn a_rank_can_ask_what_was_made_of_its_own_bodies() {
+    let mut problem = Problem::new();
+    (0..COUNT).for_each(|p| add(&mut problem, p));
+    (1..COUNT).for_each(|p| add_row(&mut problem, p));
+    problem.setup().unwrap();
+    let serial: Vec<Asked> = (0..COUNT).map(|p| asked(&mut problem, p)).collect();
+    on_ranks(3, |rank, problem| {
+        let own: Vec<usize> = (0..COUNT).filter(|p| (p + 1) % 3 == rank).collect();
+        own.iter().for_each(|p| add(problem, *p));
+        (1..COUNT).filter(|p| p % 3 == rank).for_each(|p| add_row(problem, p));
+        if rank > 0 {
+            let error = problem.kplus(0, &[0.0; N], &mut [0.0; N]).unwrap_err();
+            assert_eq!((error.kind, error.place.body), (Kind::State, Some(0)));
+        }
+        problem.setup().unwrap();
+        for (body, p) in own.iter().enumerate() {
+            assert_eq!(asked(problem, body), serial[*p], "body {p} on rank {rank}");
+        }
+        // new values: nothing is known until all ranks set up again
+        let body = own.iter().position(|p| p % 2 == 1);
+        if let Some(body) = body {
+            set_chains(problem, body, &[7.0], false);
+            number_chain(problem, body, own[body]);
+            assert_eq!(problem.null_space(body).unwrap_err().kind, Kind::State);
+            assert_eq!(problem.body_facts(body).unwrap().factors, None);
+        }
+        problem.setup().unwrap();
+        body.into_iter().for_each(|body| assert_eq!(problem.null_space(body).unwrap().0, 1));
+    });
+}
