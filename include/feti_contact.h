@@ -404,9 +404,9 @@ int32_t feti_body_no_null_space(feti_problem *p, int64_t body);
 /**
  * Reads the null space that the library uses for a body.
  *
- * Runs feti_setup when it is due. If K is not connected, the columns are those of one connected part after
- * the other, zero on all other parts. Unknowns without stiffness that no row and no load touches have no
- * column.
+ * Runs feti_setup when it is due; on several ranks as feti_body_kplus. If K is not connected, the columns
+ * are those of one connected part after the other, zero on all other parts. Unknowns without stiffness
+ * that no row and no load touches have no column.
  *
  * @param[in,out] r     in: columns that fit in `basis`, ignored without `basis`; out: dimension of the
  *                      null space
@@ -431,8 +431,9 @@ int32_t feti_body_fixing_set(feti_problem *p, int64_t body, int64_t r, const int
 /**
  * Reads the fixing unknowns of a body: with them fixed, K has full rank.
  *
- * Runs feti_setup when it is due. FETI_UNSUPPORTED if the host provides K+ (feti_body_operator).
- * FETI_STATE if the body is cut into pieces (feti_body_mesh_i32 or _i64).
+ * Runs feti_setup when it is due; on several ranks as feti_body_kplus. FETI_UNSUPPORTED if the host
+ * provides K+ (feti_body_operator). FETI_STATE if the body is cut into pieces (feti_body_mesh_i32 or
+ * _i64).
  *
  * @param      r   dimension of the null space of the body
  * @param[out] dof (r) unknowns of the body, from 0
@@ -1965,8 +1966,9 @@ int32_t feti_check_friction(feti_problem *p, int64_t n, const double *u, int64_t
 /**
  * Applies the generalised inverse of a body, `Y = K+ X`.
  *
- * Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE if the body is cut into pieces
- * (feti_body_mesh_i32 or _i64).
+ * Runs feti_setup when it is due; a rank that shares the problem with others can ask for its own bodies,
+ * and gets FETI_STATE until all have set up. X and Y may be the same array. FETI_STATE if the body is cut
+ * into pieces (feti_body_mesh_i32 or _i64).
  *
  * @param      nrhs columns of X and Y
  * @param      x    (ldx * nrhs) column-major, force
@@ -1983,7 +1985,7 @@ int32_t feti_body_kplus(feti_problem *p, int64_t body, int64_t n, int64_t nrhs, 
  * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid rows. F does not include
  * the tangential rows of nodes with friction. Runs feti_setup when it is due. `x` and `y` may be the same
  * array. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or unknowns are glued
- * (option glue).
+ * (option glue); FETI_UNSUPPORTED if several ranks have a part of the problem.
  *
  * @param      m inequality rows + equality rows
  * @param      x (m) force
@@ -1995,7 +1997,7 @@ int32_t feti_dual_apply(feti_problem *p, int64_t m, const double *x, double *y);
  * Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
  *
  * Runs feti_setup when it is due. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or
- * unknowns are glued (option glue).
+ * unknowns are glued (option glue); FETI_UNSUPPORTED if several ranks have a part of the problem.
  *
  * @param      m inequality rows + equality rows
  * @param[out] d (m) length
@@ -2095,8 +2097,9 @@ typedef struct feti_communicator {
  * The library copies the table, and calls its functions in collective calls, on the thread that called the
  * library, in the floating-point environment of that thread. It calls feti_communicator.release once when
  * the problem is destroyed, if this call has returned FETI_OK. The functions must not exit by longjmp or
- * an exception, nor call the library for a problem whose table has the same `user`. With one rank the call
- * is checked, and changes nothing.
+ * an exception, nor call the library for a problem whose table has the same `user`. With one rank it calls
+ * none, and if bodies have numbers, they and the rows are taken in the order that they have on several
+ * ranks.
  *
  * FETI_STATE if the problem has a body or a table already.
  *
@@ -2127,7 +2130,8 @@ int32_t feti_serve(const feti_communicator *by);
 /**
  * Writes all input of the problem to one file, for example for a bug report.
  *
- * FETI_UNSUPPORTED if several ranks have a part of the problem.
+ * Collective: all ranks that have a part of the problem make the call (feti_communicator_set). Rank 0
+ * writes the file, under its own `path`; one rank alone can read it.
  *
  * The file has the bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and
  * numbers of the host, rows of both kinds with right-hand sides and compliances, and the options that
@@ -2147,7 +2151,7 @@ int32_t feti_problem_write(feti_problem *p, const char *path);
 /**
  * Reads a file of feti_problem_write into an empty problem.
  *
- * FETI_UNSUPPORTED if several ranks have a part of the problem.
+ * FETI_UNSUPPORTED, on all ranks, if several make this call for a problem (feti_communicator_set).
  *
  * A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or rows
  * already. Options get their values from the file and otherwise their defaults, except index_base, which

@@ -5,7 +5,7 @@ use crate::boundary::{call, count, enter, known, OutStruct, Output};
 use crate::header::status::{of_kind, of_outcome};
 use crate::header::types::{feti_findings, feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
 use crate::rows::row_kind;
-use feti_contact::solver::{Findings, RowKind};
+use feti_contact::solver::{Call, Findings, RowKind};
 
 /// Reads what the last solve, or the last failed setup, found out about the problem.
 ///
@@ -106,9 +106,11 @@ pub unsafe extern "C" fn feti_diagnosis_dependent(
     row: *mut i64,
 ) -> i32 {
     enter(p, call!(feti_diagnosis_dependent(p, cap, count, row)), |problem| {
-        let cap = self::count(cap, "cap")?;
-        // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
-        let list = unsafe { (Output::new(count, 1, "count")?, Output::optional(row, cap, "row")?) };
+        let list = problem.checked_together(Call::Dependent, |_| {
+            let cap = self::count(cap, "cap")?;
+            // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
+            Ok(unsafe { (Output::new(count, 1, "count")?, Output::optional(row, cap, "row")?) })
+        })?;
         write_list(&problem.dependent_equalities()?, list);
         Ok(())
     })
@@ -174,10 +176,13 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined(
     motion: *mut f64,
 ) -> i32 {
     enter(p, call!(feti_diagnosis_undetermined(p, k, body, motion)), |problem| {
-        // SAFETY: room guaranteed by the caller.
-        let (fastest, motion) =
-            unsafe { (Output::optional(body, 1, "body")?, Output::optional(motion, 6, "motion")?) };
-        let open = problem.open_motion(count(k, "k")?)?;
+        let (k, fastest, motion) = problem.checked_together(Call::OpenMotion, |_| {
+            // SAFETY: room guaranteed by the caller.
+            let (fastest, motion) =
+                unsafe { (Output::optional(body, 1, "body")?, Output::optional(motion, 6, "motion")?) };
+            Ok((count(k, "k")?, fastest, motion))
+        })?;
+        let open = problem.open_motion(k)?;
         fastest.write_at(0, &[known(open.body)]);
         motion.write_at(0, &open.motion.unwrap_or([f64::NAN; 6]));
         Ok(())
@@ -210,10 +215,20 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined_motion(
     v: *mut f64,
 ) -> i32 {
     enter(p, call!(feti_diagnosis_undetermined_motion(p, k, body, n, v)), |problem| {
-        let (body, n) = body_of_order(problem, body, n)?;
-        // SAFETY: room for n numbers guaranteed by the caller.
-        let to = unsafe { Output::new(v, n, "v") }?;
-        to.write(&problem.open_motion_of(count(k, "k")?, body)?);
+        let (k, place) = problem.checked_together(Call::OpenMotion, |problem| {
+            let k = count(k, "k")?;
+            // a rank without bodies takes part, and gets nothing
+            if n == 0 && problem.sizes().bodies == 0 {
+                return Ok((k, None));
+            }
+            let (body, n) = body_of_order(problem, body, n)?;
+            // SAFETY: room for n numbers guaranteed by the caller.
+            Ok((k, Some((body, unsafe { Output::new(v, n, "v") }?))))
+        })?;
+        match place {
+            Some((body, to)) => to.write(&problem.open_motion_of(k, body)?),
+            None => drop(problem.open_motion(k)?),
+        }
         Ok(())
     })
 }

@@ -4,10 +4,12 @@ use std::ffi::c_char;
 
 use crate::boundary::{call, enter, file_path};
 use crate::header::types::feti_problem;
+use feti_contact::solver::Call;
 
 /// Writes all input of the problem to one file, for example for a bug report.
 ///
-/// FETI_UNSUPPORTED if several ranks have a part of the problem.
+/// Collective: all ranks that have a part of the problem make the call (feti_communicator_set). Rank 0 writes the file, under its own
+/// `path`; one rank alone can read it.
 ///
 /// The file has the bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the host,
 /// rows of both kinds with right-hand sides and compliances, and the options that differ from their defaults, all bit by
@@ -29,13 +31,14 @@ use crate::header::types::feti_problem;
 pub unsafe extern "C" fn feti_problem_write(p: *mut feti_problem, path: *const c_char) -> i32 {
     enter(p, call!(feti_problem_write(p, path)), |problem| {
         // SAFETY: NUL terminated guaranteed by the caller.
-        problem.write_file(unsafe { file_path(path, "path") }?)
+        let path = problem.checked_together(Call::Write, |_| unsafe { file_path(path, "path") })?;
+        problem.write_file(path)
     })
 }
 
 /// Reads a file of feti_problem_write into an empty problem.
 ///
-/// FETI_UNSUPPORTED if several ranks have a part of the problem.
+/// FETI_UNSUPPORTED, on all ranks, if several make this call for a problem (feti_communicator_set).
 ///
 /// A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or rows already. Options
 /// get their values from the file and otherwise their defaults, except index_base, which is unchanged. All data pass

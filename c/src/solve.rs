@@ -6,7 +6,7 @@ use crate::header::status::of_outcome;
 use crate::header::types::{feti_certificate, feti_info, feti_problem};
 use crate::ranks::count_of;
 use feti_contact::error::Result;
-use feti_contact::solver::{Candidate, Certificate, Entry, Problem, Report, Sizes, Traffic};
+use feti_contact::solver::{Call, Candidate, Certificate, Entry, Problem, Report, Sizes, Traffic};
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.
 ///
@@ -27,7 +27,7 @@ use feti_contact::solver::{Candidate, Certificate, Entry, Problem, Report, Sizes
 #[no_mangle]
 pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
     enter(p, call!(feti_setup(p)), |problem| {
-        let _room = problem.working_headroom()?;
+        let _room = problem.checked_together(Call::Setup, Problem::working_headroom)?;
         problem.setup()
     })
 }
@@ -72,13 +72,13 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
     let target = (!info.is_null()).then(|| unsafe { OutStruct::new(info, "info") }).transpose();
     let (mut sizes, mut found, mut ranks) = (Sizes::default(), None, None);
     let status = enter_with_status(p, call!(feti_solve(p, info)), |problem| {
-        target.as_ref().map_err(Clone::clone)?;
+        problem.checked_together(Call::Solve, |_| target.as_ref().map(drop).map_err(Clone::clone))?;
         sizes = problem.sizes();
         ranks = Some((count_of(p), problem.traffic(), problem.seconds_leading()));
         if problem.settings().fault_injection == 1 {
             panic!("fault injected on request");
         }
-        let _room = problem.working_headroom()?;
+        let _room = problem.checked_together(Call::Solve, Problem::working_headroom)?;
         let solved = problem.solve();
         // if one group of bodies has no answer, others may have one
         found = problem.report().cloned();
@@ -129,11 +129,13 @@ pub unsafe extern "C" fn feti_check(
     out: *mut feti_certificate,
 ) -> i32 {
     enter(p, call!(feti_check(p, n, u, rows, lambda, eqs, mu, out)), |problem| {
-        // SAFETY: shapes guaranteed by the caller.
-        let (u, lambda, mu) = unsafe { answer_to_check(problem, (n, u), (rows, lambda), (eqs, mu)) }?;
-        // SAFETY: `struct_size` bytes guaranteed by the caller.
-        let target = unsafe { OutStruct::new(out, "out") }?;
-        let _room = problem.working_headroom()?;
+        let ((u, lambda, mu), target, _room) = problem.checked_together(Call::Check, |problem| {
+            // SAFETY: shapes guaranteed by the caller.
+            let answer = unsafe { answer_to_check(problem, (n, u), (rows, lambda), (eqs, mu)) }?;
+            // SAFETY: `struct_size` bytes guaranteed by the caller.
+            let target = unsafe { OutStruct::new(out, "out") }?;
+            Ok((answer, target, problem.working_headroom()?))
+        })?;
         target.write(&certificate(&problem.check(u, lambda, mu)?));
         Ok(())
     })
@@ -180,14 +182,17 @@ pub unsafe extern "C" fn feti_check_friction(
 ) -> i32 {
     let call = call!(feti_check_friction(p, n, u, rows, lambda, eqs, mu, nodes, dim, lambda_t, out));
     enter(p, call, |problem| {
-        // SAFETY: shapes guaranteed by the caller.
-        let (u, lambda, mu) = unsafe { answer_to_check(problem, (n, u), (rows, lambda), (eqs, mu)) }?;
-        let len = all_nodes(problem, nodes, dim)?;
-        // SAFETY: dim numbers for each node guaranteed by the caller.
-        let tangential = unsafe { finite_input(lambda_t, len, "lambda_t") }?;
-        // SAFETY: `struct_size` bytes guaranteed by the caller.
-        let target = unsafe { OutStruct::new(out, "out") }?;
-        let _room = problem.working_headroom()?;
+        let ((u, lambda, mu), tangential, target, _room) =
+            problem.checked_together(Call::Check, |problem| {
+                // SAFETY: shapes guaranteed by the caller.
+                let answer = unsafe { answer_to_check(problem, (n, u), (rows, lambda), (eqs, mu)) }?;
+                let len = all_nodes(problem, nodes, dim)?;
+                // SAFETY: dim numbers for each node guaranteed by the caller.
+                let tangential = unsafe { finite_input(lambda_t, len, "lambda_t") }?;
+                // SAFETY: `struct_size` bytes guaranteed by the caller.
+                let target = unsafe { OutStruct::new(out, "out") }?;
+                Ok((answer, tangential, target, problem.working_headroom()?))
+            })?;
         target.write(&certificate(&problem.check_with_friction(Candidate { u, lambda, mu, tangential })?));
         Ok(())
     })

@@ -3,6 +3,7 @@
 use crate::boundary::{call, enter, id, input, same, Output};
 use crate::header::types::feti_problem;
 use crate::rows::multiplier_kind;
+use feti_contact::solver::Call;
 
 /// Gives start values for the next solve.
 ///
@@ -55,7 +56,7 @@ pub unsafe extern "C" fn feti_start_from(
 pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> i32 {
     enter(p, call!(feti_state_save(p, id)), |problem| {
         // SAFETY: the caller gives room for one number.
-        let number = unsafe { Output::new(id, 1, "id") }?;
+        let number = problem.checked_together(Call::SaveState, |_| unsafe { Output::new(id, 1, "id") })?;
         number.set(problem.save_state()? as i64);
         Ok(())
     })
@@ -78,7 +79,10 @@ pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> 
 /// | `id` | in | scalar | number of the state, from 0 |
 #[no_mangle]
 pub extern "C" fn feti_state_restore(p: *mut feti_problem, id: i64) -> i32 {
-    enter(p, call!(feti_state_restore(p, id)), |problem| problem.restore_state(self::id(id, "id")?))
+    enter(p, call!(feti_state_restore(p, id)), |problem| {
+        let number = problem.checked_together(Call::RestoreState, |_| self::id(id, "id"))?;
+        problem.restore_state(number)
+    })
 }
 
 /// Drops a saved state.

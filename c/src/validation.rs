@@ -10,8 +10,8 @@ use feti_contact::solver::Problem;
 
 /// Applies the generalised inverse of a body, `Y = K+ X`.
 ///
-/// Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE if the body is cut into pieces
-/// (feti_body_mesh_i32 or _i64).
+/// Runs feti_setup when it is due; a rank that shares the problem with others can ask for its own bodies, and gets FETI_STATE until all
+/// have set up. X and Y may be the same array. FETI_STATE if the body is cut into pieces (feti_body_mesh_i32 or _i64).
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -62,7 +62,8 @@ pub unsafe extern "C" fn feti_body_kplus(
 ///
 /// C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid rows. F does not include the
 /// tangential rows of nodes with friction. Runs feti_setup when it is due. `x` and `y` may be the same array.
-/// FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue).
+/// FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue);
+/// FETI_UNSUPPORTED if several ranks have a part of the problem.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -90,7 +91,7 @@ pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const
 /// Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
 ///
 /// Runs feti_setup when it is due. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or unknowns are
-/// glued (option glue).
+/// glued (option glue); FETI_UNSUPPORTED if several ranks have a part of the problem.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

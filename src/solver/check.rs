@@ -9,6 +9,7 @@ use crate::solver::decomposed::{of_host, solved};
 pub use crate::solver::joints::left_over;
 use crate::solver::joints::with_glue;
 use crate::solver::problem::Problem;
+use crate::solver::together::Call;
 
 /// An answer over all unknowns and rows.
 #[derive(Clone, Copy)]
@@ -34,7 +35,14 @@ impl Problem {
     /// forces of glue are chosen for the best equilibrium. An existing setup is used even if the options have changed:
     /// the last answer stays valid.
     pub fn check_with_friction(&mut self, answer: Candidate) -> Result<Certificate> {
-        let Candidate { u, lambda, mu, tangential } = answer;
+        self.checked_together(Call::Check, |problem| problem.check_lengths(answer))?;
+        match self.check_together(answer)? {
+            Some(certificate) => Ok(certificate),
+            None => self.check_alone_with(answer, left_over),
+        }
+    }
+
+    fn check_lengths(&self, Candidate { u, lambda, mu, tangential }: Candidate) -> Result<()> {
         let counts = self.model.sizes();
         let lengths = [
             ("n", u, counts.dofs),
@@ -49,10 +57,7 @@ impl Problem {
                 return Err(error.value(values.len() as f64).limit(expected as f64));
             }
         }
-        match self.check_together(answer)? {
-            Some(certificate) => Ok(certificate),
-            None => self.check_alone_with(answer, left_over),
-        }
+        Ok(())
     }
 
     /// `left`: `f - K u`, asked for if unknowns share numbers.

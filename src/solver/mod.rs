@@ -38,3 +38,4 @@ pub use body_facts::{BodyFacts, Factors, Origin};
 pub use check::Candidate;
 pub use findings::Findings;
 pub use problem::Problem;
+pub use together::Call;

@@ -116,6 +116,29 @@ static int32_t stop(feti_problem *p, int64_t number)
     return feti_rows_add_i64(p, FETI_INEQUALITY, 1, ptr, NULL, &number, &one, 0, &one, NULL);
 }
 
+/* The status is that of an argument, which it counts. */
+#define REFUSED(call) CHECK(strcmp(feti_status_name(call), "FETI_ARGUMENT") == 0)
+
+/* An argument that one rank refuses: all ranks hear of it. */
+static void refused_on_one(feti_problem *p, int wrong, int64_t id)
+{
+    const double u = 0.0, lambda = 0.0;
+    feti_certificate certificate = { .struct_size = wrong ? 1 : (int64_t)sizeof certificate };
+    feti_info info = { .struct_size = wrong ? 1 : (int64_t)sizeof info };
+    int64_t none, count, bodies, dofs, rows, eqs;
+    double v;
+
+    EXPECT(FETI_OK, feti_counts(p, &bodies, &dofs, &rows, &eqs));
+    REFUSED(feti_solve(p, &info));
+    REFUSED(feti_check(p, 1, &u, rows, &lambda, 0, NULL, &certificate));
+    REFUSED(feti_state_save(p, wrong ? NULL : &none));
+    REFUSED(feti_state_restore(p, wrong ? -1 : id));
+    REFUSED(feti_problem_write(p, wrong ? NULL : "nothing.feti"));
+    REFUSED(feti_diagnosis_dependent(p, wrong ? -1 : 0, &count, NULL));
+    REFUSED(feti_diagnosis_undetermined(p, wrong ? -1 : 0, NULL, NULL));
+    REFUSED(feti_diagnosis_undetermined_motion(p, 0, wrong ? 7 : 0, 1, &v));
+}
+
 /* Parts that do not fit together: the same status on all ranks, and afterwards a problem that does. Alone, rank 0 has it all. */
 static void parts_of_every_rank(void)
 {
@@ -137,7 +160,7 @@ static void parts_of_every_rank(void)
         EXPECT(FETI_STATE, rank == last ? feti_setup(p) : feti_solve(p, NULL));   /* different calls */
         EXPECT(FETI_OK, feti_solve(p, NULL));
         EXPECT(FETI_STATE, feti_solve(rank == last ? p : other, NULL));           /* different problems */
-        EXPECT(FETI_UNSUPPORTED, feti_problem_write(p, "nothing.feti"));
+        EXPECT(FETI_UNSUPPORTED, feti_problem_read(p, "nothing.feti"));
     }
     if (rank == last) EXPECT(FETI_OK, stop(p, 0));
     EXPECT(FETI_OK, feti_solve(p, NULL));
@@ -145,6 +168,9 @@ static void parts_of_every_rank(void)
     EXPECT(FETI_OK, feti_displacement(p, 0, 1, &u));
     CHECK(fabs(u - (rank == 0 ? 1.0 : 1.5)) < 1e-12);
     EXPECT(FETI_OK, feti_state_restore(p, id));
+    for (int by = 0; by < size; by++) refused_on_one(p, rank == by, id);
+    EXPECT(FETI_OK, feti_problem_write(p, "written.feti"));
+    EXPECT(FETI_IO, feti_problem_write(p, "no/such/folder.feti"));
     EXPECT(FETI_OK, feti_solve(other, NULL));
     EXPECT(FETI_OK, feti_problem_destroy(&p));
     EXPECT(FETI_OK, feti_problem_destroy(&other));

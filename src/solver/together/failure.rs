@@ -8,7 +8,7 @@ use crate::ranks::damaged;
 #[derive(Debug, Clone)]
 pub struct Failure(pub Error);
 
-const KINDS: [Kind; 20] = [
+const KINDS: [Kind; 15] = [
     Kind::Memory,
     Kind::State,
     Kind::LoadNotHeld,
@@ -24,22 +24,27 @@ const KINDS: [Kind; 20] = [
     Kind::Callback,
     Kind::Io,
     Kind::Communication,
-    // arguments that only all ranks together can refuse
-    Kind::Argument("dof"),
-    Kind::Argument("number"),
-    Kind::Argument("dim"),
-    Kind::Argument("value"),
-    Kind::Argument("text"),
+];
+
+/// Arguments of calls that all ranks make, and of others that only all ranks together can refuse.
+const ARGUMENTS: [&str; 25] = [
+    "argument", "body", "cap", "count", "dim", "dof", "eqs", "id", "info", "k", "lambda", "lambda_t",
+    "motion", "mu", "n", "nodes", "number", "out", "path", "row", "rows", "text", "u", "v", "value",
 ];
 
 pub fn put_kind(kind: Kind, to: &mut Vec<u8>) {
-    let known = KINDS.iter().position(|of| *of == kind);
-    let internal = KINDS.iter().position(|of| *of == Kind::Internal);
-    (known.or(internal).unwrap_or(0) as u8).put(to);
+    let place = match kind {
+        Kind::Argument(name) => KINDS.len() + ARGUMENTS.iter().position(|known| *known == name).unwrap_or(0),
+        kind => KINDS.iter().position(|known| *known == kind).unwrap_or(0),
+    };
+    (place as u8).put(to);
 }
 
 pub fn take_kind(from: &mut &[u8]) -> Result<Kind> {
-    KINDS.get(usize::from(u8::take(from)?)).copied().ok_or_else(damaged)
+    let place = usize::from(u8::take(from)?);
+    let argument = |at: usize| ARGUMENTS.get(at).map(|name| Kind::Argument(name));
+    let known = KINDS.get(place).copied();
+    known.or_else(|| argument(place.checked_sub(KINDS.len())?)).ok_or_else(damaged)
 }
 
 /// Its proof belongs to the findings.

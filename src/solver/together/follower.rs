@@ -17,19 +17,19 @@ use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::file::section_of;
 use crate::solver::together::messages::{
-    Begin, Begun, Call, Called, Finish, Given, PartTold, PartsTold, Touch, Touched, BEGIN, FINISH, LENGTHS,
-    LOADS, NUMBERS, SECTION_OF_FILE, TOUCH,
+    Begin, Begun, Call, Called, Finish, PartTold, PartsTold, Touch, Touched, BEGIN, FINISH, LENGTHS, LOADS,
+    NUMBERS, SECTION_OF_FILE, TOUCH,
 };
-use crate::solver::together::{panicked, ready_part};
+use crate::solver::together::{panicked, ready_part, Brought};
 
 impl Follower {
     /// Answers until the call ends.
-    pub fn follow(
+    pub(super) fn follow(
         &mut self,
         problem: &mut Problem,
         ranks: &Arc<Ranks>,
         number: u64,
-        (called, mut given): (Called, Option<Given>),
+        (called, mut brought): (Called, Brought),
     ) -> Result<Finish> {
         let threads = threads::count(problem.model.settings.threads, usize::MAX);
         loop {
@@ -55,7 +55,7 @@ impl Follower {
                 question => {
                     let mine = (ranks.rank, number, self.leads);
                     let answered = catch_unwind(AssertUnwindSafe(|| match question {
-                        BEGIN => begun(problem, &incoming, mine, (called, given.take())),
+                        BEGIN => begun(problem, &incoming, mine, (called, &mut brought)),
                         NUMBERS => self.section(&problem.model),
                         TOUCH => {
                             value(&incoming.message).and_then(|of| sent(self.touched(&problem.model, of)))
@@ -136,7 +136,7 @@ fn begun(
     problem: &mut Problem,
     incoming: &Incoming,
     (rank, number, leads): (usize, u64, Option<u64>),
-    (called, answer): (Called, Option<Given>),
+    (called, brought): (Called, &mut Brought),
 ) -> Result<Vec<u8>> {
     let Begin { known, .. } = value(&incoming.message)?;
     let mut begun = Begun {
@@ -146,10 +146,11 @@ fn begun(
         refused: None,
         told: None,
         values: None,
-        answer,
+        answer: brought.answer.take(),
         fits: false,
     };
     let ready = match called.call {
+        _ if brought.refused.is_some() => brought.refused.take().map_or(Ok(()), Err),
         Call::RestoreState => problem.restorable(called.number as usize).map(|fits| begun.fits = fits),
         Call::Setup | Call::Solve | Call::Check => ready_part(&mut problem.model, rank),
         Call::Write => ready_part(&mut problem.model, rank).and_then(|()| problem.model.check_kept()),

@@ -40,10 +40,6 @@ impl Leading<'_> {
         ready_part(&mut self.own.model, 0).map_err(|e| e.rank(0))?;
         let model = &self.own.model;
         let before = self.leader.told.take().unwrap_or_default();
-        if let Some((rank, failure)) = begun.iter().find_map(|(rank, of)| Some((*rank, of.refused.clone()?)))
-        {
-            return Err(failure.0.rank(rank));
-        }
         let mut before = before.into_iter().map(Some).collect::<Vec<_>>();
         before.resize_with(self.ranks.size, || None);
         let own = match before[0].take().filter(|of| of.revisions == Revised::of(model)) {

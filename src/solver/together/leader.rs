@@ -41,7 +41,7 @@ impl Leading<'_> {
             return Ok(None);
         }
         let leads = self.pair(problem, &begun).then_some(problem);
-        let ended = match refusal {
+        let ended = match refusal.or_else(|| Some(brought.refused.clone()?.rank(0))) {
             None => together(leads, called, &begun).and_then(|()| {
                 // the others hear of a panic, too
                 catch_unwind(AssertUnwindSafe(|| self.led(called, begun, brought)))
@@ -228,10 +228,6 @@ impl Leading<'_> {
 
     /// Whether the answers that all ranks have saved are those of their data, with the present matrices.
     fn fit(&self, begun: &[(usize, Begun)], number: usize) -> Result<bool> {
-        if let Some((rank, failure)) = begun.iter().find_map(|(rank, of)| Some((*rank, of.refused.clone()?)))
-        {
-            return Err(failure.0.rank(rank));
-        }
         let own = self.own.restorable(number).map_err(|e| e.rank(0))?;
         Ok(own && self.is_as_told(begun) && begun.iter().all(|(_, of)| of.fits))
     }
@@ -244,8 +240,12 @@ impl Leading<'_> {
     }
 }
 
-/// Whether all ranks are in this call.
+/// Whether all ranks are in this call, with data that none of them refuses.
 fn together(leads: Option<u64>, called: Called, begun: &[(usize, Begun)]) -> Result<()> {
+    let refused = begun.iter().find_map(|(rank, of)| Some((*rank, of.refused.clone()?)));
+    if let Some((rank, failure)) = refused.filter(|_| leads.is_some()) {
+        return Err(failure.0.rank(rank));
+    }
     let is_other = |(_, of): &&(usize, Begun)| leads.is_none() || of.called != called;
     let Some((rank, of)) = begun.iter().find(is_other) else { return Ok(()) };
     let name = |called: Called| match called.number {

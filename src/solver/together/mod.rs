@@ -28,7 +28,8 @@ use crate::solver::joined::{Follower, Joined, Leader, Role};
 use crate::solver::problem::Problem;
 use crate::solver::undetermined::OpenMotion;
 use leader::Leading;
-use messages::{Call, Called, Finish, Given};
+pub use messages::Call;
+use messages::{Called, Finish, Given};
 
 impl Problem {
     /// This rank gives its part of the problem: bodies and rows, which rows of other ranks may name by numbers. On every rank that gives
@@ -92,6 +93,23 @@ impl Problem {
         self.joined.as_ref().is_none_or(|joined| joined.rank.ranks.size == 1)
     }
 
+    /// Checks what the host gives in a call that all ranks make: if it is refused, the others hear of it.
+    #[doc(hidden)]
+    pub fn checked_together<T>(
+        &mut self,
+        call: Call,
+        check: impl FnOnce(&mut Self) -> Result<T>,
+    ) -> Result<T> {
+        check(self).map_err(|error| {
+            let refused = Some(error.clone());
+            let number = self.joined.as_ref().map(|joined| joined.rank.ranks.rank);
+            match self.together(call, 0, Brought { refused, ..Brought::default() }) {
+                Err(_) => error.rank(number.unwrap_or(0)),
+                Ok(_) => error,
+            }
+        })
+    }
+
     /// As `setup`, by all ranks; false if rank 0 is alone with its problem. So in what follows.
     pub(super) fn set_up_together(&mut self) -> Result<bool> {
         Ok(self.together(Call::Setup, 0, Brought::default())?.is_some())
@@ -108,10 +126,13 @@ impl Problem {
             return Ok(None);
         }
         let Candidate { u, lambda, mu, tangential } = answer;
-        let left = if self.model.settings.glue == 1 { left_over(&self.model, u)? } else { Vec::new() };
+        let left = self.checked_together(Call::Check, |problem| match problem.model.settings.glue {
+            1 => left_over(&problem.model, u),
+            _ => Ok(Vec::new()),
+        })?;
         let forces = [lambda, mu, tangential].map(<[f64]>::to_vec).into();
         let answer = Some(Given { u: u.to_vec(), left, forces });
-        let end = self.together(Call::Check, 0, Brought { answer, path: None })?;
+        let end = self.together(Call::Check, 0, Brought { answer, ..Brought::default() })?;
         Ok(end.and_then(|end| end.certificate))
     }
 
@@ -156,9 +177,7 @@ impl Problem {
                 self.all = Some(all);
                 ended
             }
-            Role::Follows(follower) => {
-                follower.follow(self, ranks, problem, (called, brought.answer)).map(Some)
-            }
+            Role::Follows(follower) => follower.follow(self, ranks, problem, (called, brought)).map(Some),
         }
     }
 
@@ -191,6 +210,8 @@ impl Problem {
 /// What the host gives in a call.
 #[derive(Default)]
 struct Brought<'a> {
+    /// Why this rank refuses what it was given.
+    refused: Option<Error>,
     /// An answer to be checked.
     answer: Option<Given>,
     /// The file to be written, on rank 0.

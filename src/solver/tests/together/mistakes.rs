@@ -2,7 +2,7 @@
 
 use super::{add_chain, add_row, on_ranks, N};
 use crate::error::{Error, Kind};
-use crate::solver::{FrictionInput, Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
+use crate::solver::{Call, FrictionInput, Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
 /// Ranks of every problem; each has a chain, and the contact row of its lower end.
 const RANKS: usize = 3;
@@ -194,6 +194,33 @@ fn slips_that_one_rank_alone_has_committed() {
         });
         for end in ends {
             assert_eq!(end, (Ok(Outcome::Solved), Kind::State, Ok(Outcome::Solved)));
+        }
+    }
+}
+
+#[test]
+fn what_one_rank_refuses_in_a_call_of_all() {
+    for by in 0..RANKS {
+        let ends = on_ranks(RANKS, |rank, problem| {
+            give(problem, rank);
+            let (n, rows) = (if rank == by { N + 1 } else { N }, usize::from(rank > 0));
+            let checked = problem.check(&vec![0.0; n], &vec![0.0; rows], &[]).unwrap_err();
+            let saved = problem.save_state().unwrap();
+            let refuse = |_: &mut Problem| match rank == by {
+                true => Err(Error::argument("id", "no such state").index(-1)),
+                false => Ok(saved),
+            };
+            let restored = problem.checked_together(Call::RestoreState, refuse);
+            let restored = restored.and_then(|number| problem.restore_state(number)).unwrap_err();
+            let file = std::path::Path::new("no/such/folder/of/feti.feti");
+            let written = problem.write_file(file).unwrap_err();
+            ([checked, restored], written, solved(problem))
+        });
+        for (refused, written, solved) in ends {
+            for (error, name) in refused.into_iter().zip(["n", "id"]) {
+                assert_eq!((error.kind, error.place.rank), (Kind::Argument(name), Some(by)), "{error}");
+            }
+            assert_eq!((written.kind, solved), (Kind::Io, Ok(Outcome::Solved)), "{written}");
         }
     }
 }
