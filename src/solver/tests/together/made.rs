@@ -1,9 +1,14 @@
 //! K+, null spaces and facts of bodies on the rank that has given them.
 
+use std::collections::HashSet;
+
+use decks::random::Random;
+
 use super::{add_row, bits, number_chain, on_ranks, N};
+use crate::body::Name;
 use crate::error::Kind;
 use crate::solver::tests::lent::set_chains;
-use crate::solver::{BodyFacts, Problem};
+use crate::solver::{BodyFacts, Outcome, Problem};
 
 const COUNT: usize = 5;
 
@@ -76,5 +81,77 @@ fn a_rank_can_ask_what_was_made_of_its_own_bodies() {
         }
         problem.setup().unwrap();
         body.into_iter().for_each(|body| assert_eq!(problem.null_space(body).unwrap().0, 1));
+    });
+}
+
+/// 64 equal bodies, 64 of one pattern, 32 pairs: dealt out as they come, each rank factorises every matrix that it has once.
+#[test]
+fn equal_bodies_share_a_factor_on_every_rank() {
+    const MANY: usize = 64;
+    let kinds: [fn(usize) -> f64; 3] = [|_| 2.0, |p| 2.0 + p as f64, |p| 2.0 + (p / 2) as f64];
+    let add = |problem: &mut Problem, p: usize, stiffness: f64| {
+        let body = problem.add_body(N).unwrap();
+        set_chains(problem, body, &[stiffness], p == 0);
+        number_chain(problem, body, p);
+    };
+    for (kind, stiffness) in kinds.into_iter().enumerate() {
+        let mut serial = Problem::new();
+        (0..MANY).for_each(|p| add(&mut serial, p, stiffness(p)));
+        (1..MANY).for_each(|p| add_row(&mut serial, p));
+        assert_eq!(serial.solve().unwrap().outcome, Outcome::Solved);
+        let u: Vec<Vec<u64>> = (0..MANY).map(|p| bits(serial.displacement(p).unwrap())).collect();
+        for (size, seed) in [(2, 1), (3, 2), (4, 3), (4, 4)] {
+            let rank_of: Vec<usize> = {
+                let mut random = Random::new(seed);
+                (0..MANY).map(|_| random.below(size)).collect()
+            };
+            on_ranks(size, |rank, problem| {
+                let own: Vec<usize> = (0..MANY).rev().filter(|p| rank_of[*p] == rank).collect();
+                own.iter().for_each(|p| add(problem, *p, stiffness(*p)));
+                (1..MANY).filter(|p| p % size == rank).for_each(|p| add_row(problem, p));
+                assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+                let factors: HashSet<usize> = (0..own.len())
+                    .flat_map(|body| problem.made(body))
+                    .map(|part| part.kplus().factor_address())
+                    .collect();
+                // the held chain has a matrix of its own
+                let distinct: HashSet<(bool, u64)> =
+                    own.iter().map(|p| (*p == 0, stiffness(*p).to_bits())).collect();
+                assert_eq!(factors.len(), distinct.len(), "kind {kind}, rank {rank} of {size}");
+                for (body, p) in own.iter().enumerate() {
+                    assert_eq!(bits(problem.displacement(body).unwrap()), u[*p], "kind {kind}, chain {p}");
+                }
+            });
+        }
+    }
+}
+
+/// New loads need nothing of a setup; new values of one body only its own.
+#[test]
+fn a_second_step_makes_only_what_has_changed() {
+    const SETUP: [Name; 6] =
+        [Name::Enter, Name::Plan, Name::Analyse, Name::Factorise, Name::Join, Name::Boundary];
+    on_ranks(3, |rank, problem| {
+        let own: Vec<usize> = (0..6).filter(|p| p % 3 == rank).collect();
+        own.iter().for_each(|p| drop([super::add_chain(problem, *p)]));
+        (1..6).filter(|p| p % 3 == rank).for_each(|p| add_row(problem, p));
+        let asked = |problem: &Problem| {
+            let all = problem.joined.as_ref().unwrap().rank.bodies.asked();
+            SETUP.map(|name| all[name as usize])
+        };
+        problem.solve().unwrap();
+        let first = asked(problem);
+        assert_eq!(rank == 0, first == [0; 6]);
+        let mut load = [0.0; N];
+        load[2] = 0.5;
+        problem.set_load(0, &load).unwrap();
+        problem.solve().unwrap();
+        assert_eq!(asked(problem), first, "new loads");
+        if rank == 1 {
+            set_chains(problem, 1, &[8.0], false);
+        }
+        problem.solve().unwrap();
+        let [.., factorise, _, _] = asked(problem);
+        assert_eq!(factorise - first[3], u64::from(rank == 1), "new values on rank 1");
     });
 }
