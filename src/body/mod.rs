@@ -66,7 +66,7 @@ pub use layout::{Layout, Symbolic};
 pub use lent::{asked, Analysis, Answering, Bodies, Lending, Made, NewKplus, PlanAway, Planned};
 #[cfg(feature = "loopback")]
 pub use local::answers;
-pub use local::{Bring, Distributed, Kept, Local, LocalDual, Locals, Put, Question, Section, Seen};
+pub use local::{Bring, Distributed, Home, Kept, Local, LocalDual, Locals, Put, Question, Section, Seen};
 pub use misfit::Misfit;
 pub use null_space::{Modes, NullSpaceInput};
 pub use pilots::{Carried, Pilots};
@@ -155,6 +155,11 @@ impl Body {
             Some(OtherForm::Given(there)) => Some(there),
             _ => None,
         }
+    }
+
+    /// The host has given it, or the body of which it is a part, on another rank.
+    pub fn is_given_there(&self) -> bool {
+        self.given_there().is_some() || self.load_there().is_some()
     }
 
     /// Its load, if the host has given it on another rank.

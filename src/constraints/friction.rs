@@ -100,10 +100,10 @@ impl Friction {
     }
 
     /// `T u - C_t lambda_t`, length, (dim, nodes): the s_old for which the answer has no slip.
-    pub fn reached(&self, u: &[f64], tangential: &[f64]) -> Result<Vec<f64>> {
+    pub fn reached(&self, u: impl Fn(usize) -> f64, tangential: &[f64]) -> Result<Vec<f64>> {
         let mut rows = self.rows.copied("friction")?;
         rows.rhs.fill(0.0);
-        Ok((0..rows.len()).map(|i| 0.0 - rows.open_gap(i, u, tangential[i])).collect())
+        Ok((0..rows.len()).map(|i| 0.0 - rows.open_gap_at(i, &u, tangential[i])).collect())
     }
 
     /// The ratio of the lengths of a node's rows, if it is too large for one factor, or supports have taken entries.

@@ -194,9 +194,14 @@ impl RowSet {
     /// `c_i + C_i lambda_i - b_i u`: the open gap, including the compliance of the row. In double-double arithmetic: the
     /// rounding of a long sum, in particular of equal terms, is many times that of its terms.
     pub fn open_gap(&self, i: usize, u: &[f64], multiplier: f64) -> f64 {
+        self.open_gap_at(i, |j| u[j], multiplier)
+    }
+
+    /// As `open_gap`; `u`: the displacement of an unknown.
+    pub fn open_gap_at(&self, i: usize, u: impl Fn(usize) -> f64, multiplier: f64) -> f64 {
         let mut left = Twofold::from(self.rhs[i]);
         left.add_product(self.compliance[i], multiplier);
-        self.matrix.row(i).for_each(|(j, v)| left.add_product(-v, u[j]));
+        self.matrix.row(i).for_each(|(j, v)| left.add_product(-v, u(j)));
         left.value()
     }
 

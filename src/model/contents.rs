@@ -1,6 +1,7 @@
 //! Bodies, rows and options as setup and solve read them. Nothing is computed here; results stored elsewhere keep the
 //! revisions of the data from which they were computed.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -253,6 +254,21 @@ impl SolvedModel {
     /// Range of the unknowns of a body among all unknowns.
     pub fn range(&self, body: usize) -> Range<usize> {
         self.offsets[body]..self.offsets[body + 1]
+    }
+
+    /// First value of every body in vectors over the unknowns of bodies, and their end; bodies that the host has given on other ranks have
+    /// none.
+    pub fn starts(&self) -> Cow<'_, [usize]> {
+        let stays = |given: &GivenBody| given.body.is_given_there();
+        if !self.bodies.iter().any(stays) {
+            return Cow::Borrowed(&self.offsets);
+        }
+        let own = self.bodies.iter().map(|given| if stays(given) { 0 } else { given.body.order });
+        let ends = own.scan(0, |end, own| {
+            *end += own;
+            Some(*end)
+        });
+        std::iter::once(0).chain(ends).collect()
     }
 
     /// Threads for work on all bodies, limited by the number of unknowns: waking a thread for a few unknowns costs more

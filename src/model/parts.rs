@@ -111,10 +111,15 @@ impl Parts {
 
     /// The weighted mean of the copies, over the unknowns of the host's bodies.
     pub fn mean(&self, of_parts: &[f64]) -> Result<Vec<f64>> {
-        let mut all = zeros(self.offsets.last().copied().unwrap_or(0), WHAT)?;
+        self.mean_from(of_parts, (&self.starts, &self.offsets))
+    }
+
+    /// As `mean`, with the first values of parts and of bodies in these vectors, and their ends; parts that stay on other ranks have none.
+    pub fn mean_from(&self, of_parts: &[f64], (starts, offsets): (&[usize], &[usize])) -> Result<Vec<f64>> {
+        let mut all = zeros(offsets.last().copied().unwrap_or(0), WHAT)?;
         for part in 0..self.parts.len() {
-            let offset = self.offsets[self.parts[part].body];
-            for (i, v) in of_parts[self.starts[part]..self.starts[part + 1]].iter().enumerate() {
+            let offset = offsets[self.parts[part].body];
+            for (i, v) in of_parts[starts[part]..starts[part + 1]].iter().enumerate() {
                 let (dof, share) = self.place(part, i);
                 all[offset + dof] += share * v;
             }

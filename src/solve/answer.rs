@@ -1,7 +1,11 @@
 //! Combines the answers of all islands.
 
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 use std::time::Duration;
 
+use crate::body::{Home, Token};
 use crate::certificate::{Certificate, FrictionState, RowJudgement};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Result};
@@ -17,6 +21,7 @@ use crate::solve::slides::Slide;
 /// The answer of the last solve, in the units of the host. Entries are NaN for bodies of an island without an answer.
 pub struct Answer {
     pub report: Report,
+    /// Without bodies that the host has given on other ranks.
     pub u: Vec<f64>,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
@@ -53,12 +58,52 @@ pub struct OfOthers {
     pub reached: Vec<f64>,
 }
 
+/// Displacements of bodies that the host has given on other ranks.
+#[derive(Default)]
+pub struct Stays {
+    /// Bodies of the model, and what their displacements are called on their ranks.
+    pub names: Vec<(usize, Arc<Token>)>,
+    /// Unknowns of the model that rows touch, ascending, and their displacements.
+    pub at: Vec<(usize, f64)>,
+}
+
+/// The displacements that are known of the unknowns of a model.
+pub struct Shown<'a> {
+    offsets: &'a [usize],
+    starts: Cow<'a, [usize]>,
+    u: &'a [f64],
+    stays: &'a Stays,
+}
+
+impl<'a> Shown<'a> {
+    pub fn new(model: &'a SolvedModel, u: &'a [f64], stays: &'a Stays) -> Self {
+        Self { offsets: &model.offsets, starts: model.starts(), u, stays }
+    }
+
+    /// Of an unknown that rows touch, or of a body here; 0 where only rows that never close touch a body elsewhere.
+    pub fn at(&self, j: usize) -> f64 {
+        if let Cow::Borrowed(_) = self.starts {
+            return self.u[j];
+        }
+        let body = self.offsets[1..].partition_point(|end| *end <= j);
+        if self.starts[body] < self.starts[body + 1] {
+            return self.u[self.starts[body] + j - self.offsets[body]];
+        }
+        let at = self.stays.at.binary_search_by_key(&j, |of| of.0);
+        at.map_or(0.0, |at| self.stays.at[at].1)
+    }
+}
+
 /// How the islands ended, each with an answer or with the named reason why it has none; of the answers only what
 /// [`Answer`] keeps.
 pub struct Ends<'a> {
     model: &'a SolvedModel,
+    prepared: &'a Prepared,
     islands: &'a [Ready],
     answer: Answer,
+    /// First displacement of every body in the answer, and the end.
+    starts: Cow<'a, [usize]>,
+    stays: Stays,
     certificate: Option<Certificate>,
     /// The first reason.
     pub failure: Option<Error>,
@@ -69,13 +114,13 @@ pub struct Ends<'a> {
 impl<'a> Ends<'a> {
     pub fn new(model: &'a SolvedModel, prepared: &'a Prepared) -> Result<Self> {
         let counts = model.sizes();
-        let rows = [&model.contact, &model.equalities];
+        let (rows, starts) = ([&model.contact, &model.equalities], model.starts());
         let alone = [RowKind::Inequality, RowKind::Equality]
             .map(|kind| rows[kind as usize].forces_without_entries(kind));
         let [lambda, mu] = alone.map(Iterator::collect);
         let answer = Answer {
             report: Report::new(model, prepared)?,
-            u: zeros(counts.dofs, "an answer")?,
+            u: zeros(starts[counts.bodies], "an answer")?,
             lambda,
             mu,
             tangential: zeros(counts.tangential, "an answer")?,
@@ -91,12 +136,23 @@ impl<'a> Ends<'a> {
             of_others: None,
         };
         let (islands, recovery) = (&prepared.done(model)?.islands[..], Duration::ZERO);
-        Ok(Self { model, islands, answer, certificate: None, failure: None, recovery })
+        let stays = Stays::default();
+        Ok(Self {
+            model,
+            prepared,
+            islands,
+            answer,
+            starts,
+            stays,
+            certificate: None,
+            failure: None,
+            recovery,
+        })
     }
 
     /// Takes in the end of the next island.
     pub fn take_in(&mut self, end: Result<Solved>) {
-        let Self { model, answer, .. } = self;
+        let Self { model, answer, starts, stays, .. } = self;
         let ready = &self.islands[answer.failed.len()];
         answer.failed.push(end.is_err());
         match end {
@@ -111,34 +167,67 @@ impl<'a> Ends<'a> {
                     None => self.certificate = Some(own),
                     Some(all) => all.merge(&own),
                 }
-                answer.take_in(model, ready, solved);
+                answer.take_in(model, ready, solved, (starts, stays));
             }
             Err(error) => {
                 answer.cleaned.push(None);
-                answer.leave_out(model, ready);
+                answer.leave_out(ready, starts);
                 self.failure.get_or_insert(error);
             }
         }
     }
 
-    /// The answer; none if no island has one.
-    pub fn answer(self) -> Option<Answer> {
-        let Self { model, mut answer, certificate, .. } = self;
-        let mut certificate = certificate?;
+    /// Brings displacements of bodies elsewhere where nodes touch them that carry no force: their slips are told, too.
+    fn bring_idle(&mut self) -> Result<()> {
+        let Self { model, prepared, islands, stays, .. } = self;
+        let names: HashMap<usize, &Token> = stays.names.iter().map(|(body, name)| (*body, &**name)).collect();
+        let mut is_idle = vec![!names.is_empty(); model.friction.len()];
+        islands
+            .iter()
+            .flat_map(|ready| &ready.island.friction.numbers)
+            .for_each(|node| is_idle[*node] = false);
+        let mut unknowns = BTreeMap::<usize, Vec<u32>>::new();
+        for node in (0..is_idle.len()).filter(|node| is_idle[*node]) {
+            let rows = model.friction.nodes[node].rows();
+            for (j, _) in rows.flat_map(|row| model.friction.rows.matrix.row(row)) {
+                let body = model.offsets[1..].partition_point(|end| *end <= j);
+                if names.contains_key(&body) {
+                    unknowns.entry(body).or_default().push((j - model.offsets[body]) as u32);
+                }
+            }
+        }
+        let of = &prepared.done(model)?.island_of;
+        for (body, at) in unknowns {
+            let ready = &islands[of[body]];
+            let k = ready.island.bodies.iter().position(|p| *p == body).unwrap_or(0);
+            let values = prepared.locals(model, ready)?.values(k, names[&body], at.clone())?;
+            let unknowns = at.into_iter().map(|dof| model.offsets[body] + dof as usize);
+            stays.at.extend(unknowns.zip(values));
+        }
+        Ok(())
+    }
+
+    /// The answer, and what stays on other ranks; none if no island has one.
+    pub fn answer(mut self) -> Result<Option<(Answer, Stays)>> {
+        self.bring_idle()?;
+        let Self { model, mut answer, mut stays, certificate, .. } = self;
+        let Some(mut certificate) = certificate else { return Ok(None) };
+        stays.at.sort_unstable_by_key(|of| of.0);
         let counts = model.sizes();
         answer.report.body.take_if(|_| answer.failed.len() == 1);
         certificate.energy += answer.take_in_rows_alone(model);
         (answer.report.certificate, answer.report.energy) = (certificate, certificate.energy);
-        let gap = |i: usize| model.contact.open_gap(i, &answer.u, answer.lambda[i]);
+        let shown = Shown::new(model, &answer.u, &stays);
+        let gap = |i: usize| model.contact.open_gap_at(i, |j| shown.at(j), answer.lambda[i]);
         answer.gaps = (0..counts.rows).map(gap).collect();
         let count = |state| answer.friction.iter().filter(|own| **own == state).count();
         (answer.report.newton, answer.report.starts) =
             (answer.report.counts.newton, answer.report.counts.starts);
         answer.report.sticking = count(FrictionState::Stick);
         answer.report.slipping = count(FrictionState::Slip);
-        answer.slips = answer.slips_of(model);
+        answer.slips = answer.slips_of(model, |j| shown.at(j));
         answer.report.active = answer.states.iter().filter(|state| **state == RowState::Closed).count();
-        Some(answer)
+        Ok(Some((answer, stays)))
     }
 }
 
@@ -153,12 +242,28 @@ impl Answer {
     }
 
     /// Adds the answer of an island and its work counts.
-    fn take_in(&mut self, model: &SolvedModel, ready: &Ready, solved: Solved) {
+    fn take_in(
+        &mut self,
+        model: &SolvedModel,
+        ready: &Ready,
+        solved: Solved,
+        (starts, stays): (&[usize], &mut Stays),
+    ) {
         let Solved { ending, u, outcome, finished, unheld, slide, tries, .. } = solved;
         let Ending { solution, recovered, judgement, .. } = ending;
         let island = &ready.island;
         let states = states(ready, &recovered, &judgement.contact);
-        island.scatter(model, &u, &mut self.u);
+        for (k, (&p, u)) in island.bodies.iter().zip(u).enumerate() {
+            match u {
+                Home::Here(u) => self.u[starts[p]..starts[p + 1]].copy_from_slice(&u),
+                Home::There(name) => {
+                    stays.names.push((p, name));
+                    let unknowns = island.touched.on(k).iter().map(|dof| model.offsets[p] + *dof as usize);
+                    let values = &recovered.u.at_rows[island.touched.range(k)];
+                    stays.at.extend(unknowns.zip(values.iter().copied()));
+                }
+            }
+        }
         island.contact.scatter(&recovered.lambda, &mut self.lambda);
         island.contact.scatter(&states, &mut self.states);
         island.equalities.scatter(&recovered.mu, &mut self.mu);
@@ -206,14 +311,14 @@ impl Answer {
     }
 
     /// `T u - s_old - C_t lambda_t` of all tangential rows, for the current displacements.
-    pub fn slips_of(&self, model: &SolvedModel) -> Vec<f64> {
+    pub fn slips_of(&self, model: &SolvedModel, u: impl Fn(usize) -> f64) -> Vec<f64> {
         let rows = &model.friction.rows;
-        (0..rows.len()).map(|i| -rows.open_gap(i, &self.u, self.tangential[i])).collect()
+        (0..rows.len()).map(|i| -rows.open_gap_at(i, &u, self.tangential[i])).collect()
     }
 
-    fn leave_out(&mut self, model: &SolvedModel, ready: &Ready) {
+    fn leave_out(&mut self, ready: &Ready, starts: &[usize]) {
         let island = &ready.island;
-        island.bodies.iter().for_each(|&p| self.u[model.range(p)].fill(f64::NAN));
+        island.bodies.iter().for_each(|&p| self.u[starts[p]..starts[p + 1]].fill(f64::NAN));
         let none = |members: &Members| vec![f64::NAN; members.numbers.len()];
         island.contact.scatter(&none(&island.contact), &mut self.lambda);
         island.equalities.scatter(&none(&island.equalities), &mut self.mu);

@@ -1,8 +1,8 @@
 //! One island: solve the dual, recover the displacements, certify.
 
-use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
+use crate::body::Home;
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};
 use crate::model::{Accuracy, Settings, SolvedModel};
@@ -29,7 +29,7 @@ use crate::solve::slides::Slide;
 pub struct Solved {
     pub ending: Ending,
     /// Of every body, length.
-    pub u: Vec<Vec<f64>>,
+    pub u: Vec<Home>,
     pub outcome: Outcome,
     /// The direct finish has replaced the answer.
     pub finished: bool,
@@ -175,8 +175,8 @@ fn run(
     let finished = corrected(settings, recovery, &mut ending, spoilt)?;
     let slide = if finished { interrupt::never(|| recovery.slides(&ending))? } else { slides }.worst();
     let outcome = outcome(case, dual, recovery, &mut ending, (slide.is_some(), accuracy))?;
-    let u = interrupt::never(|| recovery.data.bodies.bring(&ending.recovered.u.of))?;
-    let u = u.into_iter().map(Cow::into_owned).collect();
+    let stays = |k: usize| case.model.bodies[case.island().bodies[k]].body.is_given_there();
+    let u = interrupt::never(|| recovery.data.bodies.home(&ending.recovered.u.of, stays))?;
     Ok(Tried::Ended(Box::new(Solved {
         ending,
         u,

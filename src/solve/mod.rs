@@ -36,7 +36,7 @@ mod start;
 mod travel;
 mod work;
 
-pub use answer::{named, Answer, OfOthers};
+pub use answer::{named, Answer, OfOthers, Shown, Stays};
 pub use case::Case;
 pub use every_island::solve_islands;
 pub use held::without_force;

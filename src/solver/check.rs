@@ -1,5 +1,8 @@
 //! The certificate of an existing answer.
 
+use std::sync::Arc;
+
+use crate::body::{Home, Token};
 use crate::certificate::{self, certify, Certificate, Entry};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
@@ -38,7 +41,10 @@ impl Problem {
         self.checked_together(Call::Check, |problem| problem.check_lengths(answer))?;
         match self.check_together(answer)? {
             Some(certificate) => Ok(certificate),
-            None => self.check_alone_with(answer, left_over),
+            None => self.check_alone_with(answer, &|_| None, |host, u, unknowns| {
+                let left = left_over(host, u)?;
+                Ok(unknowns.iter().map(|j| left[*j]).collect())
+            }),
         }
     }
 
@@ -60,11 +66,12 @@ impl Problem {
         Ok(())
     }
 
-    /// `left`: `f - K u`, asked for if unknowns share numbers.
+    /// u of bodies here; `there`: what that of a part is called on the rank that has it. `left`: `f - K u` of some unknowns.
     pub(super) fn check_alone_with(
         &mut self,
         Candidate { u, lambda, mu, tangential }: Candidate,
-        left: impl FnOnce(&HostModel, &[f64]) -> Result<Vec<f64>>,
+        there: &dyn Fn(usize) -> Option<Arc<Token>>,
+        left: impl FnOnce(&HostModel, &[f64], &[usize]) -> Result<Vec<f64>>,
     ) -> Result<Certificate> {
         if self.prepared.duals(&self.model).is_none() {
             self.setup()?;
@@ -76,20 +83,25 @@ impl Problem {
         let lengths = prepared.lengths(model).map_err(told)?;
         lengths.check_empty_rows().map_err(told)?;
         prepared.refresh(&lengths)?;
-        let mu = &with_glue(host, || left(host, u), [lambda, mu, tangential])?[..];
-        let copies = model.parts.as_ref().map(|parts| parts.spread(u)).transpose()?;
-        let u = copies.as_deref().unwrap_or(u);
+        let mu = &with_glue(host, |unknowns| left(host, u, unknowns), [lambda, mu, tangential])?[..];
+        let starts = host.starts();
+        let own = |part: usize| match (there(part), &model.parts) {
+            (Some(token), _) => Home::There(token),
+            (None, None) => Home::Here(u[model.range(part)].to_vec()),
+            (None, Some(parts)) => {
+                Home::Here(parts.gather(part, &u[starts[parts.parts[part].body]..]).collect())
+            }
+        };
         let mut all: Option<Certificate> = None;
         for ready in &prepared.done(model)?.islands {
             let island = &ready.island;
-            let own = island.gather(model, u)?;
             let equalities = ready.whole().map_or(&island.equalities, |whole| &whole.island.equalities);
             let (lambda, mu) = (island.contact.gather(lambda), equalities.gather(mu));
             let tangential = island.friction.tangential.gather(tangential);
             let case = Case { model, prepared, ready, method: None };
             let data = case.data(case.loads()?)?;
-            let at_rows = data.bodies.at_rows(&own);
-            let (u, at_rows) = (&data.bodies.put(own)?, &at_rows[..]);
+            let own = data.bodies.placed(island.bodies.iter().map(|part| own(*part)).collect())?;
+            let (u, at_rows) = (&own.of, &own.at_rows[..]);
             let answer =
                 certificate::Candidate { u, at_rows, lambda: &lambda, mu: &mu, tangential: &tangential };
             let judged = match ready.whole() {

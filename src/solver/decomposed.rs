@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::linalg::Matrix;
 use crate::model::{HostModel, Parts, SolvedModel};
 use crate::setup::{Prepared, Whole};
-use crate::solve::Answer;
+use crate::solve::{Answer, Shown, Stays};
 use crate::solver::findings::Findings;
 
 /// Whether the bodies that are solved are the same unknowns of the host.
@@ -36,19 +36,27 @@ pub fn answer_of_host(
     solved: &SolvedModel,
     prepared: &Prepared,
     mut answer: Answer,
+    stays: &mut Stays,
 ) -> Result<Answer> {
     let Some(parts) = solved.parts.as_deref() else { return Ok(answer) };
-    answer.u = parts.mean(&answer.u)?;
-    let gap = |i: usize| host.contact.open_gap(i, &answer.u, answer.lambda[i]);
+    let starts = host.starts();
+    answer.u = parts.mean_from(&answer.u, (&solved.starts(), &starts))?;
+    for (j, _) in &mut stays.at {
+        let part = parts.starts[1..].partition_point(|end| end <= j);
+        *j = parts.offsets[parts.parts[part].body] + parts.place(part, *j - parts.starts[part]).0;
+    }
+    stays.at.sort_unstable_by_key(|of| of.0);
+    let shown = Shown::new(host, &answer.u, stays);
+    let gap = |i: usize| host.contact.open_gap_at(i, |j| shown.at(j), answer.lambda[i]);
     let gaps = (0..host.contact.len()).map(gap).collect();
     answer.gaps = gaps;
-    answer.slips = answer.slips_of(host);
+    answer.slips = answer.slips_of(host, |j| shown.at(j));
     let bodies = 0..host.bodies.len();
     let worst =
         |body: usize| parts.of(body).fold(0.0, |worst: f64, part| worst.max(answer.force_errors[part]));
     answer.force_errors = bodies.clone().map(worst).collect();
     let amplitudes = |body: usize| match whole_of(prepared, parts, body).filter(|_| parts.is_cut(body)) {
-        Some(whole) => whole.amplitudes(solved, body, &answer.u[host.range(body)]),
+        Some(whole) => whole.amplitudes(solved, body, &answer.u[starts[body]..starts[body + 1]]),
         None => parts.of(body).flat_map(|part| answer.alpha[part].iter().copied()).collect(),
     };
     answer.alpha = bodies.map(amplitudes).collect();

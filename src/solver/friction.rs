@@ -20,7 +20,7 @@ impl Problem {
         }
         let reached = match &answer.of_others {
             Some(others) => others.reached.clone(),
-            None => self.model.friction.reached(&answer.u, &answer.tangential)?,
+            None => self.model.friction.reached(|j| answer.u[j], &answer.tangential)?,
         };
         let (nodes, dim) = (self.model.friction.len(), self.model.friction.dim);
         self.history.commits += 1;

@@ -3,32 +3,38 @@
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::model::{HostModel, Joint};
-use crate::platform::memory::{copied, filled, zeros};
+use crate::platform::memory::{copied, zeros};
 
 const WHAT: &str = "forces of glue";
 
 /// Multipliers of the host's equality rows, then of the joints, with the joint forces that bring the answer closest to
-/// equilibrium, `left` being `f - K u`: the residual `f - K u - B'lambda` of an unknown is passed to the next unknown with its number and remains
-/// at the last one.
+/// equilibrium: the residual `f - K u - B'lambda` of an unknown is passed to the next unknown with its number and remains
+/// at the last one. `left`: `f - K u` of these unknowns.
 pub fn with_glue(
     host: &HostModel,
-    left: impl FnOnce() -> Result<Vec<f64>>,
+    left: impl FnOnce(&[usize]) -> Result<Vec<f64>>,
     forces: [&[f64]; 3],
 ) -> Result<Vec<f64>> {
     let (mut all, joints) = (copied(forces[RowKind::Equality as usize], WHAT)?, host.joints()?);
     if joints.is_empty() {
         return Ok(all);
     }
-    let mut left = left()?;
+    let mut unknowns: Vec<usize> = joints.iter().flat_map(|joint| joint.ends).collect();
+    unknowns.sort_unstable();
+    unknowns.dedup();
+    let mut left = left(&unknowns)?;
+    let at = |j: usize| unknowns.binary_search(&j).ok();
     for kind in RowKind::ALL {
         let (rows, forces) = (host.rows(kind), forces[kind as usize]);
-        let mut carried = filled(rows.len(), 0.0, WHAT)?;
-        (0..rows.len()).filter(|&i| rows.is_finite(i)).for_each(|i| carried[i] = forces[i]);
-        rows.matrix.mul_transposed_add(-1.0, &carried, &mut left);
+        for i in (0..rows.len()).filter(|&i| rows.is_finite(i) && forces[i] != 0.0) {
+            rows.matrix.row(i).for_each(|(j, v)| at(j).into_iter().for_each(|at| left[at] -= forces[i] * v));
+        }
     }
-    for Joint { ends: [before, after], .. } in joints {
-        all.push(left[before]);
-        left[after] += left[before];
+    for Joint { ends, .. } in joints {
+        if let [Some(before), Some(after)] = ends.map(at) {
+            all.push(left[before]);
+            left[after] += left[before];
+        }
     }
     Ok(all)
 }

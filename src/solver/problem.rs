@@ -16,7 +16,7 @@ use crate::platform::stopwatch;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::ranks::Traffic;
 use crate::setup::{Duals, Prepared, Work};
-use crate::solve::{solve_islands, Answer, DualMethod, Report};
+use crate::solve::{solve_islands, Answer, DualMethod, Report, Stays};
 use crate::solver::decomposed::{answer_of_host, findings_of_host, of_host, same_bodies, solved};
 use crate::solver::findings::{redundant, Findings};
 use crate::solver::history::{Current, History};
@@ -40,6 +40,8 @@ pub struct Problem {
     phases: Phases,
     /// Processor seconds of the last setup or solve that the thread of the call has led; none without other ranks.
     leading: Option<f64>,
+    /// Displacements of the last answer that other ranks have.
+    pub(super) stays: Stays,
     /// What this rank keeps of a problem to which several have given bodies, and, on rank 0, the problem of all.
     pub(super) joined: Option<Box<Joined>>,
     pub(super) all: Option<Box<Problem>>,
@@ -123,8 +125,9 @@ impl Problem {
         let failure = ends.failure.clone().map(told);
         watch.phases.add(Phase::DualSolve, solving.elapsed());
         watch.phases.move_time(Phase::DualSolve, Phase::Recovery, ends.recovery);
-        if let Some(answer) = ends.answer() {
-            let mut answer = answer_of_host(host, model, prepared, answer)?;
+        if let Some((answer, mut stays)) = ends.answer().map_err(told)? {
+            let mut answer = answer_of_host(host, model, prepared, answer, &mut stays)?;
+            self.stays = stays;
             answer.report.seconds_setup = (solving - started).as_secs_f64();
             answer.report.seconds_solve = solving.elapsed().as_secs_f64();
             answer.report.phases = prepared.phases(model, &watch.phases);

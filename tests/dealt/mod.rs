@@ -44,6 +44,8 @@ struct Bits {
     /// Of every row of each kind.
     forces: [Vec<Vec<u64>>; 3],
     gaps: Vec<Vec<u64>>,
+    /// Of every node.
+    slips: Vec<Vec<u64>>,
     states: Vec<String>,
     /// Weights of contact and equality rows in a contradiction, or factors of rows that repeat others.
     weights: [Vec<Vec<u64>>; 2],
@@ -209,6 +211,9 @@ fn take(
             }
         }
     }
+    let slips = problem.slips().unwrap().to_vec();
+    let each = hand.nodes.iter().zip(slips.chunks(deck.friction.dim.max(1)));
+    each.for_each(|(k, own)| all.slips[*k] = bits(own));
     let gaps = problem.gaps().unwrap().to_vec();
     hand.rows[0].iter().zip(&gaps).for_each(|(i, own)| all.gaps[*i] = bits(&[*own]));
     let states = problem.active().unwrap().to_vec();
@@ -225,6 +230,7 @@ fn nothing(deck: &Deck) -> Bits {
         reactions: bodies,
         weights: [contact.clone(), equalities.clone()],
         gaps: contact.clone(),
+        slips: vec![Vec::new(); deck.friction.normal.len()],
         states: vec![String::new(); contact.len()],
         forces: [contact, equalities, vec![Vec::new(); deck.friction.normal.len()]],
     }
@@ -332,6 +338,7 @@ impl Bits {
         self.forces.iter_mut().zip(other.forces).for_each(|(to, from)| fill(to, from));
         self.weights.iter_mut().zip(other.weights).for_each(|(to, from)| fill(to, from));
         fill(&mut self.gaps, other.gaps);
+        fill(&mut self.slips, other.slips);
         fill(&mut self.states, other.states);
     }
 }

@@ -84,6 +84,19 @@ impl Bodies {
         self.store.keep(name, RwLock::new(HostLoad(load)));
     }
 
+    /// Keeps a vector over the unknowns of a body.
+    pub fn keep_vector(&self, name: u64, v: Vec<f64>) {
+        self.store.keep(name, RwLock::new(v));
+    }
+
+    /// A vector over the unknowns of a body, which is no longer kept.
+    pub fn taken_vector(&self, name: u64) -> Result<Vec<f64>> {
+        let kept = self.store.find::<RwLock<Vec<f64>>>(name)?;
+        self.store.forget(&[name]);
+        let own = Arc::try_unwrap(kept).map(|own| own.into_inner().unwrap_or_else(PoisonError::into_inner));
+        Ok(own.unwrap_or_else(|kept| kept.read().unwrap_or_else(PoisonError::into_inner).clone()))
+    }
+
     /// A K+ that was made here, if rank 0 still has it.
     pub fn kplus_named(&self, name: u64) -> Option<Arc<GeneralizedInverse>> {
         self.kplus(name).ok().map(|with| Arc::clone(&with.kplus))

@@ -6,7 +6,7 @@ use crate::body::local::{Local, Question};
 use crate::error::Result;
 use crate::linalg::Symmetric;
 use crate::platform::memory::copied;
-use crate::ranks::{wire_struct, wire_unit};
+use crate::ranks::{damaged, wire_struct, wire_unit};
 
 /// Keeps a vector.
 pub struct Put {
@@ -27,10 +27,12 @@ impl Question for Put {
     }
 }
 
-/// Asks for a vector.
-pub struct Bring;
+/// Asks for a vector, or for its values at these unknowns.
+pub struct Bring {
+    pub at: Option<Vec<u32>>,
+}
 
-wire_unit!(Bring);
+wire_struct!(Bring { at });
 
 impl Question for Bring {
     const NAME: Name = Name::Bring;
@@ -39,7 +41,11 @@ impl Question for Bring {
     type Given = (Vec<f64>,);
 
     fn answer(self, _: &Local, _: &mut (), v: &Vec<f64>) -> Result<Vec<f64>> {
-        copied(v, "a vector over the unknowns of a body")
+        let value = |dof: &u32| v.get(*dof as usize).copied().ok_or_else(damaged);
+        match self.at {
+            Some(at) => at.iter().map(value).collect(),
+            None => copied(v, "a vector over the unknowns of a body"),
+        }
     }
 }
 

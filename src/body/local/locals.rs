@@ -6,11 +6,12 @@ use std::sync::Arc;
 use crate::body::elsewhere::{ask, Asking, Away};
 use crate::body::given::Stiffness;
 use crate::body::local::brought::{Bring, Put, Section};
-use crate::body::local::kept::{Given, Kept, OfBody};
+use crate::body::local::kept::{Distributed, Given, Kept, OfBody};
 use crate::body::local::seen::Seen;
 use crate::body::local::{Heading, Local, Question};
 use crate::error::Result;
 use crate::linalg::Symmetric;
+use crate::platform::memory::copied;
 use crate::platform::{stopwatch, threads};
 use crate::ranks::Token;
 
@@ -23,11 +24,24 @@ pub struct Locals<'a> {
     threads: usize,
 }
 
+/// A vector over the unknowns of a body: itself, or its name on the rank where the host has given the body.
+pub enum Home {
+    Here(Vec<f64>),
+    There(Arc<Token>),
+}
+
 /// K, n x n, force / length, and `D~ / 2^p`, n.
 pub type OfSection<'a> = (Cow<'a, Symmetric>, Cow<'a, [f64]>);
 
 /// Entries of K, below which a question about all bodies costs less than waking other threads.
 const PARALLEL_PAYS: usize = 1 << 18;
+
+/// A question about a body elsewhere: `kept`, the name of what is made; `given`, those of what is read.
+fn asking<Q: Question>(away: &Away, question: Q, kept: Option<u64>, given: Vec<u64>) -> Asking {
+    let Away { name, .. } = away;
+    let heading = Heading { body: name.number, kept, from: None, given };
+    Asking::new(name.rank, Q::NAME, (heading, question))
+}
 
 /// Tests count the answers.
 fn answered<Q: Question>(answer: Q::Answer) -> Q::Answer {
@@ -190,7 +204,71 @@ impl<'a> Locals<'a> {
         if !self.some_away {
             return Ok(v.each()?.into_iter().map(|own| Cow::Borrowed(&own[..])).collect());
         }
-        Ok(self.ask(|_| Bring, v)?.into_iter().map(Cow::Owned).collect())
+        Ok(self.ask(|_| Bring { at: None }, v)?.into_iter().map(Cow::Owned).collect())
+    }
+
+    /// The vectors of the bodies that are here or come from here, brought; of the others, which `stays` names, what they are called there.
+    pub fn home(&self, v: &Kept, stays: impl Fn(usize) -> bool) -> Result<Vec<Home>> {
+        let (mut asked, mut all) = (Vec::new(), Vec::with_capacity(self.len()));
+        for (p, body) in self.bodies.iter().enumerate() {
+            all.push(match body.away() {
+                None => Home::Here(copied(v.here(p)?, "a displacement")?),
+                Some(_) if stays(p) => Home::There(Arc::clone(v.token(p)?)),
+                Some(away) => {
+                    asked.push((p, asking(away, Bring { at: None }, None, vec![v.token(p)?.number])));
+                    Home::Here(Vec::new())
+                }
+            });
+        }
+        for (p, brought) in self.answered::<Bring>(asked)? {
+            all[p] = Home::Here(brought);
+        }
+        Ok(all)
+    }
+
+    /// Vectors that are here, or have names where their bodies are.
+    pub fn placed(&self, v: Vec<Home>) -> Result<Distributed> {
+        let (mut sent, mut asked) = (Vec::new(), Vec::new());
+        let (mut of, mut at_rows) = (Vec::with_capacity(self.len()), Vec::with_capacity(self.len()));
+        for (p, (body, v)) in self.bodies.iter().zip(v).enumerate() {
+            let (own, at) = match (body.away(), v) {
+                (None, Home::Here(v)) => (body.at_rows(&v), OfBody::Here(v)),
+                (Some(away), Home::Here(v)) => {
+                    let (at, token) = (body.at_rows(&v), away.name.ranks.token(away.name.rank));
+                    sent.push((p, asking(away, Put { v }, Some(token.number), Vec::new())));
+                    (at, OfBody::Elsewhere(Arc::new(token)))
+                }
+                (Some(away), Home::There(token)) => {
+                    let at = Some(body.touched().to_vec());
+                    asked.push((p, asking(away, Bring { at }, None, vec![token.number])));
+                    (Vec::new(), OfBody::Elsewhere(token))
+                }
+                (None, Home::There(_)) => return Err(crate::ranks::damaged()),
+            };
+            at_rows.push(own);
+            of.push(at);
+        }
+        self.answered::<Put>(sent)?;
+        for (p, brought) in self.answered::<Bring>(asked)? {
+            at_rows[p] = brought;
+        }
+        Ok(Distributed::new((at_rows, Kept::wherever(of))))
+    }
+
+    /// Values of a vector of a body elsewhere at these unknowns.
+    pub fn values(&self, p: usize, token: &Token, at: Vec<u32>) -> Result<Vec<f64>> {
+        let away = self.bodies[p].away().ok_or_else(crate::ranks::damaged)?;
+        let asked = asking(away, Bring { at: Some(at) }, None, vec![token.number]);
+        let mut brought = self.answered::<Bring>(vec![(p, asked)])?;
+        brought.pop().map(|(_, values)| values).ok_or_else(crate::ranks::damaged)
+    }
+
+    /// The answers to questions about some bodies elsewhere.
+    fn answered<Q: Question>(&self, asked: Vec<(usize, Asking)>) -> Result<Vec<(usize, Q::Answer)>> {
+        let away = self.bodies.iter().find_map(Seen::away);
+        let Some(Away { name, .. }) = away.filter(|_| !asked.is_empty()) else { return Ok(Vec::new()) };
+        let answers = ask(&name.ranks, asked)?.answers::<Q::Answer>()?.into_iter();
+        answers.map(|(p, answer)| Ok((p, answered::<Q>(answer?)))).collect()
     }
 
     /// K and metric of all bodies in one place; none if the entries of some K are not known.

@@ -10,7 +10,7 @@ mod seen;
 
 pub use brought::{Bring, Put, Section};
 pub use kept::{Distributed, Given, Kept};
-pub use locals::Locals;
+pub use locals::{Home, Locals};
 pub use seen::Seen;
 
 use crate::body::elsewhere::Name;

@@ -9,16 +9,18 @@ use crate::error::{Error, Kind, Result};
 use crate::gathering::{copies, Revised, Told, Values, SECTION};
 use crate::model::file::write::lengths;
 use crate::model::HostModel;
+use crate::platform::memory::zeros;
 use crate::platform::threads;
 use crate::ranks::{message, value, Incoming, Ranks, Wire, END};
 use crate::serving::answer;
+use crate::solver::check::{left_over, Candidate};
 use crate::solver::joined::Follower;
 use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::file::section_of;
 use crate::solver::together::messages::{
-    Begin, Begun, Call, Called, Finish, PartTold, PartsTold, Touch, Touched, BEGIN, FINISH, LENGTHS, LOADS,
-    NUMBERS, SECTION_OF_FILE, TOUCH,
+    Begin, Begun, Call, Called, Candidates, Finish, PartTold, PartsTold, Touch, Touched, BEGIN, CANDIDATES,
+    FINISH, LENGTHS, LOADS, NUMBERS, SECTION_OF_FILE, TOUCH,
 };
 use crate::solver::together::{panicked, ready_part, Brought};
 
@@ -63,6 +65,8 @@ impl Follower {
                         LOADS => {
                             value(&incoming.message).and_then(|first| sent(self.loads(&problem.model, first)))
                         }
+                        CANDIDATES => value(&incoming.message)
+                            .and_then(|of| sent(self.candidates(&problem.model, brought.answer, of))),
                         LENGTHS => Ok(message(&lengths(&problem.model))),
                         SECTION_OF_FILE => {
                             value(&incoming.message).and_then(|of| sent(section_of(&problem.model, of)))
@@ -118,6 +122,47 @@ impl Follower {
         Ok(Touched { copies, bodies })
     }
 
+    /// Keeps the displacements of an answer to be checked; `f - K u` where it is asked for.
+    fn candidates(
+        &self,
+        model: &HostModel,
+        answer: Option<Candidate>,
+        Candidates { first, left_at }: Candidates,
+    ) -> Result<Vec<f64>> {
+        let (Some(parts), Some(answer)) = (&self.parts, answer) else { return Ok(Vec::new()) };
+        let parts = parts.model.parts.as_deref().ok_or_else(missing)?;
+        for (part, of) in parts.parts.iter().enumerate() {
+            let own = parts.gather(part, &answer.u[parts.offsets[of.body]..]).collect();
+            self.rank.bodies.keep_vector(first + part as u64, own);
+        }
+        if left_at.is_empty() {
+            return Ok(Vec::new());
+        }
+        let left = left_over(model, answer.u)?;
+        let value = |(body, dof): &(usize, usize)| {
+            let at = model.offsets.get(*body).and_then(|first| left.get(first + dof));
+            at.copied().ok_or_else(missing)
+        };
+        left_at.iter().map(value).collect()
+    }
+
+    /// Displacements over all unknowns of this rank, of parts whose vectors have these names.
+    pub(super) fn displacements(&self, names: &[Option<u64>]) -> Result<Vec<f64>> {
+        let parts = self.parts.as_ref().and_then(|of| of.model.parts.as_deref()).ok_or_else(missing)?;
+        let mut all = zeros(parts.offsets.last().copied().unwrap_or(0), "displacements")?;
+        for (part, name) in names.iter().enumerate() {
+            let own = &mut all[parts.offsets[parts.parts[part].body]..];
+            let places = parts.dofs_of(part).iter().map(|dof| *dof as usize);
+            match name {
+                Some(name) => {
+                    places.zip(self.rank.bodies.taken_vector(*name)?).for_each(|(i, v)| own[i] += v)
+                }
+                None => places.for_each(|i| own[i] = f64::NAN),
+            }
+        }
+        Ok(all)
+    }
+
     /// Keeps the loads of the parts for rank 0; the largest entry of each.
     fn loads(&mut self, model: &HostModel, first: u64) -> Result<Vec<Option<f64>>> {
         let Some(parts) = &mut self.parts else { return Ok(Vec::new()) };
@@ -136,7 +181,7 @@ fn begun(
     problem: &mut Problem,
     incoming: &Incoming,
     (rank, number, leads): (usize, u64, Option<u64>),
-    (called, brought): (Called, &mut Brought),
+    (called, brought): (Called, &mut Brought<'_>),
 ) -> Result<Vec<u8>> {
     let Begin { known, .. } = value(&incoming.message)?;
     let mut begun = Begun {
@@ -146,7 +191,7 @@ fn begun(
         refused: None,
         told: None,
         values: None,
-        answer: brought.answer.take(),
+        forces: brought.answer.map(|of| [of.lambda, of.mu, of.tangential].map(<[f64]>::to_vec).into()),
         fits: false,
     };
     let ready = match called.call {

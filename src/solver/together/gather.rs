@@ -17,7 +17,7 @@ use crate::solver::together::messages::{Begun, PartTold, PartsTold, Touch, Touch
 use crate::solver::together::ready_part;
 
 /// Names of what a rank keeps, from the first on.
-const BLOCK: u64 = 1 << 40;
+pub(super) const BLOCK: u64 = 1 << 40;
 
 impl Leading<'_> {
     pub(super) fn gather(&mut self, begun: Vec<(usize, Begun)>) -> Result<()> {

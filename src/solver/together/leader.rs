@@ -5,14 +5,18 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
-use crate::gathering::{is_numbered, At, Order, Revised};
-use crate::ranks::{value, Ranks, Request, Wire};
-use crate::solver::check::Candidate;
+use crate::gathering::{is_numbered, At, Revised};
+use crate::ranks::{value, Ranks, Request, Token, Wire};
+use crate::solve::Stays;
+use crate::solver::check::{left_over, Candidate};
 use crate::solver::joined::Leader;
 use crate::solver::made::BodyMade;
 use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
-use crate::solver::together::messages::{Begin, Begun, Call, Called, Finish, Given, BEGIN, FINISH};
+use crate::solver::together::gather::BLOCK;
+use crate::solver::together::messages::{
+    Begin, Begun, Call, Called, Candidates, Finish, BEGIN, CANDIDATES, FINISH,
+};
 use crate::solver::together::split::Split;
 use crate::solver::together::{for_one_rank, panicked, Brought};
 
@@ -59,6 +63,7 @@ impl Leading<'_> {
         let own = ends.remove(0);
         let mut ends = ends.into_iter();
         self.ask(FINISH, |_| Finish { leads, ..ends.next().unwrap_or_default() })?;
+        self.all.stays = Stays::default();
         Ok(Some(own))
     }
 
@@ -179,12 +184,14 @@ impl Leading<'_> {
         std::mem::swap(&mut self.all.host, &mut self.own.host);
         let all = &self.all;
         let answer = all.current().map(|current| &*current.answer).filter(|_| call == Call::Solve);
-        let split = Split::new(&self.leader.order, &all.model, self.ranks.size, answer)?;
+        let with = answer.map(|answer| (answer, &all.stays));
+        let split = Split::new(&self.leader.order, &all.model, self.ranks.size, with)?;
+        let names = |rank: usize| split.names(rank, all.parts(), &all.stays);
         let failure = ended.err().map(|error| Failure(split.error(error)));
         Ok(self.each(|rank| Finish {
             failure: failure.clone(),
             made: self.made(&split, rank),
-            share: all.findings.as_ref().map(|findings| split.share(rank, answer, findings)),
+            share: all.findings.as_ref().map(|findings| split.share(rank, answer, names(rank), findings)),
             ..Finish::default()
         }))
     }
@@ -195,22 +202,73 @@ impl Leading<'_> {
         (rank > 0).then(|| split.own_bodies_of(rank).iter().map(|body| self.all.told_of(*body)).collect())
     }
 
-    fn checked(&mut self, mut begun: Vec<(usize, Begun)>, given: Option<Given>) -> Result<Vec<Finish>> {
+    fn checked(&mut self, mut begun: Vec<(usize, Begun)>, answer: Option<Candidate>) -> Result<Vec<Finish>> {
         let lost = || Error::new(Kind::Internal, "a rank has given no answer to check");
-        let mut answers = vec![(0, given.ok_or_else(lost)?)];
+        let own = answer.ok_or_else(lost)?;
+        let mut forces = vec![Vec::new(); self.ranks.size];
+        forces[0] = [own.lambda, own.mu, own.tangential].map(<[f64]>::to_vec).into();
         for (rank, of) in &mut begun {
-            answers.push((*rank, of.answer.take().ok_or_else(lost)?));
+            forces[*rank] = of.forces.take().ok_or_else(lost)?;
         }
         self.gather(begun)?;
-        let all = merged(&self.leader.order, &answers);
-        let [lambda, mu, tangential] = [0, 1, 2].map(|kind| &all.forces[kind][..]);
-        let candidate = Candidate { u: &all.u, lambda, mu, tangential };
+        let order = Arc::clone(&self.leader.order);
+        let [lambda, mu, tangential] = [0, 1, 2].map(|kind| {
+            let own = |at: &At| forces[at.rank][kind].get(at.number).copied().unwrap_or(0.0);
+            order.rows[kind].iter().map(own).collect::<Vec<f64>>()
+        });
+        let here = order.bodies.iter().filter(|at| at.rank == 0);
+        let u: Vec<f64> = here.flat_map(|at| &own.u[self.own.model.range(at.number)]).copied().collect();
+        let (names, left) = self.left_over(own.u)?;
+        let candidate = Candidate { u: &u, lambda: &lambda, mu: &mu, tangential: &tangential };
+        let there = |part: usize| names.get(&part).cloned();
         std::mem::swap(&mut self.all.host, &mut self.own.host);
-        let checked = self.all.check_alone_with(candidate, |_, _| Ok(all.left.clone()));
+        let checked = self.all.check_alone_with(candidate, &there, |_, _, unknowns| {
+            let value = |j: &usize| left.get(j).copied().ok_or_else(lost);
+            unknowns.iter().map(value).collect()
+        });
         std::mem::swap(&mut self.all.host, &mut self.own.host);
         let split = Split::new(&self.leader.order, &self.all.model, self.ranks.size, None)?;
         let certificate = Some(split.certificate(&checked.map_err(|error| split.error(error))?));
         Ok(self.each(|rank| Finish { certificate, made: self.made(&split, rank), ..Finish::default() }))
+    }
+
+    /// Of an answer to be checked what its displacements on other ranks are called, by parts, and `f - K u` of unknowns with joints; `own`:
+    /// displacements on rank 0.
+    fn left_over(&mut self, own: &[f64]) -> Result<(HashMap<usize, Arc<Token>>, HashMap<usize, f64>)> {
+        self.all.decompose()?;
+        let (order, model) = (&self.leader.order, &self.all.model);
+        let mut ends: Vec<usize> = model.joints()?.iter().flat_map(|joint| joint.ends).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let mut of_rank: Vec<Vec<(usize, (usize, usize))>> = vec![Vec::new(); self.ranks.size];
+        for j in ends {
+            let body = model.offsets[1..].partition_point(|end| *end <= j);
+            let At { rank, number } = order.bodies[body];
+            of_rank[rank].push((j, (number, j - model.offsets[body])));
+        }
+        let mut left = HashMap::new();
+        if !of_rank[0].is_empty() {
+            let all = left_over(&self.own.model, own)?;
+            let offsets = &self.own.model.offsets;
+            left.extend(of_rank[0].iter().map(|(j, (body, dof))| (*j, all[offsets[*body] + dof])));
+        }
+        let firsts: Vec<u64> = (0..self.ranks.size).map(|_| self.ranks.block(BLOCK)).collect();
+        let left_at = |rank: usize| of_rank[rank].iter().map(|(_, at)| *at).collect();
+        let asked = |rank: usize| Candidates { first: firsts[rank], left_at: left_at(rank) };
+        for (rank, answer) in self.ask(CANDIDATES, asked)? {
+            let values: Vec<f64> = value(&answer)?;
+            left.extend(of_rank[rank].iter().map(|(j, _)| *j).zip(values));
+        }
+        let mut bodies: Vec<(At, usize)> = order.bodies.iter().copied().zip(0..).collect();
+        bodies.sort_unstable();
+        let (mut names, mut next) = (HashMap::new(), firsts);
+        for (At { rank, .. }, body) in bodies.into_iter().filter(|(at, _)| at.rank > 0) {
+            for part in self.all.parts_of(body) {
+                names.insert(part, Arc::new(self.ranks.named(rank, next[rank])));
+                next[rank] += 1;
+            }
+        }
+        Ok((names, left))
     }
 
     fn open_motion(&mut self, k: usize) -> Result<Vec<Finish>> {
@@ -255,24 +313,4 @@ fn together(leads: Option<u64>, called: Called, begun: &[(usize, Begun)]) -> Res
     let another = if leads.is_some() { "" } else { " for another problem" };
     let what = format!("rank {rank} is in {}{another}, rank 0 in {}", name(of.called), name(called));
     Err(Error::new(Kind::State, what))
-}
-
-/// An answer on the bodies and rows of all ranks.
-fn merged(order: &Order, answers: &[(usize, Given)]) -> Given {
-    let of: HashMap<usize, &Given> = answers.iter().map(|(rank, of)| (*rank, of)).collect();
-    let starts = order.starts();
-    let values = |pick: fn(&Given) -> &[f64]| {
-        let mut all = Vec::new();
-        for (body, at) in order.bodies.iter().enumerate() {
-            let (start, n) = (starts[body], order.offsets[body + 1] - order.offsets[body]);
-            let own = of.get(&at.rank).and_then(|of| pick(of).get(start..start + n));
-            all.extend_from_slice(own.unwrap_or(&vec![0.0; n]));
-        }
-        all
-    };
-    let forces = |kind: usize| {
-        let own = |at: &At| of.get(&at.rank).and_then(|of| of.forces[kind].get(at.number)).copied();
-        order.rows[kind].iter().map(|at| own(at).unwrap_or(0.0)).collect()
-    };
-    Given { u: values(|of| &of.u), left: values(|of| &of.left), forces: (0..3).map(forces).collect() }
 }

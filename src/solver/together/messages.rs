@@ -16,6 +16,8 @@ pub const NUMBERS: u32 = 3;
 pub const TOUCH: u32 = 4;
 pub const LOADS: u32 = 5;
 pub const FINISH: u32 = 6;
+/// An answer to be checked: `Candidates`.
+pub const CANDIDATES: u32 = 9;
 /// Of a problem file: bytes of the sections of every body; one section of a body, by these numbers.
 pub const LENGTHS: u32 = 7;
 pub const SECTION_OF_FILE: u32 = 8;
@@ -74,20 +76,17 @@ pub struct Begun {
     pub refused: Option<Failure>,
     pub told: Option<Told>,
     pub values: Option<Values>,
-    /// An answer to be checked.
-    pub answer: Option<Given>,
+    /// Forces of an answer to be checked, of contact, equality and tangential rows.
+    pub forces: Option<Vec<Vec<f64>>>,
     /// The answer of the state is that of its data.
     pub fits: bool,
 }
 
-/// An answer on the bodies and rows of a rank.
-#[derive(Clone)]
-pub struct Given {
-    pub u: Vec<f64>,
-    /// `f - K u`, if unknowns share numbers.
-    pub left: Vec<f64>,
-    /// Of contact, equality and tangential rows.
-    pub forces: Vec<Vec<f64>>,
+/// What the displacements of the answer to be checked are called, those of other parts following the first.
+pub struct Candidates {
+    pub first: u64,
+    /// Bodies and dofs of which `f - K u` is asked for.
+    pub left_at: Vec<(usize, usize)>,
 }
 
 /// Numbers that rows of other ranks name, or that other ranks have, ascending, and the name of the first part, those of others following.
@@ -136,8 +135,8 @@ pub struct Finish {
 wire_enum!(Call { Setup, Solve, Check, SaveState, RestoreState, OpenMotion, Dependent, Write, Read });
 wire_struct!(Called { call, number });
 wire_struct!(Begin { problem, called, known });
-wire_struct!(Begun { problem, leads, called, refused, told, values, answer, fits });
-wire_struct!(Given { u, left, forces });
+wire_struct!(Begun { problem, leads, called, refused, told, values, forces, fits });
+wire_struct!(Candidates { first, left_at });
 wire_struct!(Touch { numbers, first });
 wire_struct!(Touched { copies, bodies });
 wire_struct!(PartsTold { parts, loose });

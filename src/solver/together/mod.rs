@@ -22,14 +22,14 @@ use crate::model::HostModel;
 use crate::ranks::Ranks;
 use crate::serving::Rank;
 use crate::solve::Report;
-use crate::solver::check::{left_over, Candidate};
+use crate::solver::check::Candidate;
 use crate::solver::findings::rigid_motion;
 use crate::solver::joined::{Follower, Joined, Leader, Role};
 use crate::solver::problem::Problem;
 use crate::solver::undetermined::OpenMotion;
 use leader::Leading;
 pub use messages::Call;
-use messages::{Called, Finish, Given};
+use messages::{Called, Finish};
 
 impl Problem {
     /// This rank gives its part of the problem: bodies and rows, which rows of other ranks may name by numbers. On every rank that gives
@@ -125,13 +125,7 @@ impl Problem {
         if self.joined.is_none() {
             return Ok(None);
         }
-        let Candidate { u, lambda, mu, tangential } = answer;
-        let left = self.checked_together(Call::Check, |problem| match problem.model.settings.glue {
-            1 => left_over(&problem.model, u),
-            _ => Ok(Vec::new()),
-        })?;
-        let forces = [lambda, mu, tangential].map(<[f64]>::to_vec).into();
-        let answer = Some(Given { u: u.to_vec(), left, forces });
+        let answer = Some(answer);
         let end = self.together(Call::Check, 0, Brought { answer, ..Brought::default() })?;
         Ok(end.and_then(|end| end.certificate))
     }
@@ -191,7 +185,10 @@ impl Problem {
             let mut findings = share.findings;
             findings.motion = findings.own_motion(&self.model, joined.rank.ranks.rank);
             self.findings = Some(findings);
-            if let Some(answer) = share.answer {
+            if let Some(mut answer) = share.answer {
+                if let Role::Follows(follower) = &joined.role {
+                    answer.u = follower.displacements(&share.names)?;
+                }
                 self.history().keep(answer, 0);
                 joined.answered = Some(self.model.revisions);
             }
@@ -213,7 +210,7 @@ struct Brought<'a> {
     /// Why this rank refuses what it was given.
     refused: Option<Error>,
     /// An answer to be checked.
-    answer: Option<Given>,
+    answer: Option<Candidate<'a>>,
     /// The file to be written, on rank 0.
     path: Option<&'a Path>,
 }

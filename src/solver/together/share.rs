@@ -17,10 +17,12 @@ use crate::solver::together::failure::{put_kind, take_kind};
 pub struct Share {
     /// Of its own bodies and rows.
     pub answer: Option<Answer>,
+    /// On ranks other than 0, what the displacements of its parts are called there; none: these have none.
+    pub names: Vec<Option<u64>>,
     pub findings: Findings,
 }
 
-wire_struct!(Share { answer, findings });
+wire_struct!(Share { answer, names, findings });
 wire_struct!(Answer {
     report,
     u,

@@ -1,11 +1,13 @@
 //! The answer of the problem of all ranks, split: to each rank what belongs to its own bodies, rows and nodes, in its own numbers.
 
+use std::collections::HashMap;
+
 use crate::certificate::{Certificate, Entry};
 use crate::constraints::RowKind;
 use crate::error::{Error, Proof, Result};
 use crate::gathering::{At, Order};
-use crate::model::{HostModel, Joint};
-use crate::solve::{Answer, OfOthers, Report};
+use crate::model::{HostModel, Joint, Parts};
+use crate::solve::{Answer, OfOthers, Report, Shown, Stays};
 use crate::solver::findings::Findings;
 use crate::solver::together::share::Share;
 
@@ -53,12 +55,12 @@ impl<'a> Split<'a> {
         order: &'a Order,
         model: &'a HostModel,
         ranks: usize,
-        answer: Option<&Answer>,
+        answer: Option<(&Answer, &Stays)>,
     ) -> Result<Self> {
         let nothing = || OfOthers { of_rows: vec![Vec::new(); RowKind::ALL.len()], ..OfOthers::default() };
         let mut others: Vec<OfOthers> = (0..ranks).map(|_| nothing()).collect();
         let all = Own::of_all(order, ranks);
-        let Some(answer) = answer else { return Ok(Self { order, model, own: all, others }) };
+        let Some((answer, stays)) = answer else { return Ok(Self { order, model, own: all, others }) };
         let starts = order.starts();
         let own = |j: usize| {
             let body = model.offsets[1..].partition_point(|end| *end <= j);
@@ -82,12 +84,23 @@ impl<'a> Split<'a> {
                 others[rank].of_glue.push((j, push));
             }
         }
-        let (dim, reached) = (model.friction.dim, model.friction.reached(&answer.u, &answer.tangential)?);
+        let shown = Shown::new(model, &answer.u, stays);
+        let (dim, reached) =
+            (model.friction.dim, model.friction.reached(|j| shown.at(j), &answer.tangential)?);
         for (to, own) in others.iter_mut().zip(&all) {
             let nodes = own.nodes.iter().flat_map(|k| &reached[dim * k..dim * (k + 1)]);
             to.reached = nodes.copied().collect();
         }
         Ok(Self { order, model, own: all, others })
+    }
+
+    /// Of the parts of every body of a rank, in their order there, what their displacements are called there.
+    pub fn names(&self, rank: usize, parts: Option<&Parts>, stays: &Stays) -> Vec<Option<u64>> {
+        let of: HashMap<usize, u64> = stays.names.iter().map(|(part, name)| (*part, name.number)).collect();
+        let own = self.own[rank].bodies.iter();
+        own.flat_map(|body| parts.map_or(*body..body + 1, |parts| parts.of(*body)))
+            .map(|part| of.get(&part).copied())
+            .collect()
     }
 
     fn body(&self, body: usize) -> At {
@@ -124,6 +137,13 @@ impl<'a> Split<'a> {
         own.flat_map(|body| &all[self.model.range(*body)]).copied().collect()
     }
 
+    /// Of rank 0; the others have theirs.
+    fn own_displacements(&self, rank: usize, all: &[f64]) -> Vec<f64> {
+        let starts = self.model.starts();
+        let own = self.own[rank].bodies.iter().filter(|_| rank == 0);
+        own.flat_map(|body| &all[starts[*body]..starts[body + 1]]).copied().collect()
+    }
+
     /// The bodies of a rank, in the order of their numbers there.
     pub fn own_bodies_of(&self, rank: usize) -> &[usize] {
         &self.own[rank].bodies
@@ -143,9 +163,15 @@ impl<'a> Split<'a> {
     }
 
     /// What a rank gets.
-    pub fn share(&self, rank: usize, answer: Option<&Answer>, findings: &Findings) -> Share {
+    pub fn share(
+        &self,
+        rank: usize,
+        answer: Option<&Answer>,
+        names: Vec<Option<u64>>,
+        findings: &Findings,
+    ) -> Share {
         let answer = answer.map(|answer| self.own_answer(rank, answer));
-        Share { answer, findings: self.findings(rank, findings) }
+        Share { answer, names, findings: self.findings(rank, findings) }
     }
 
     fn own_answer(&self, rank: usize, answer: &Answer) -> Answer {
@@ -155,7 +181,7 @@ impl<'a> Split<'a> {
         let of_node = |k: &usize| (dim * k..dim * (k + 1)).map(|i| answer.slips[i]);
         Answer {
             report: self.report(&answer.report),
-            u: self.own(rank, &answer.u),
+            u: self.own_displacements(rank, &answer.u),
             lambda,
             mu,
             tangential,
