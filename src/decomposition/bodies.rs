@@ -1,5 +1,6 @@
 //! The bodies that are solved: connected components and pieces, with the data of the host's body restricted to them.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::body::{pattern_key, same_matrix, value_key, Body, GivenThere, OtherForm, PartThere};
@@ -21,13 +22,14 @@ pub fn parts(
     connected: &Connected,
     held: &dyn Fn(usize) -> bool,
 ) -> Result<(Vec<GivenBody>, Parts)> {
-    let (mut split_bodies, mut all) = (Vec::new(), Parts::default());
+    let (mut split_bodies, mut all, starts) = (Vec::new(), Parts::default(), host.starts());
     all.offsets.clone_from(&host.offsets);
     for (body, given) in host.bodies.iter().enumerate() {
         all.first.push(split_bodies.len());
         let assembled = given.body.assembled().map(|k| k.measured_without(slight));
         all.assembled.push(assembled.transpose().map_err(|e| e.body(body))?);
-        let mut split = Split { given, body, held, first: host.offsets[body], loose: &mut all.loose };
+        let (held_from, first) = (starts[body], host.offsets[body]);
+        let mut split = Split { given, body, held, held_from, first, loose: &mut all.loose };
         let pieces =
             given.mesh.as_deref().and_then(Mesh::pieces).filter(|_| given.body.assembled().is_some());
         let there = given.body.given_there();
@@ -35,46 +37,55 @@ pub fn parts(
             _ if there.is_some() => there.map(|there| split.there(there)).transpose()?.unwrap_or_default(),
             (Some(pieces), ..) => split.pieces(pieces).map_err(|e| e.body(body))?,
             (None, Some(components), Some(k)) => split.components(components, k).map_err(|e| e.body(body))?,
-            _ => vec![split.whole()?],
+            _ => vec![split.whole()],
         });
     }
     all.first.push(split_bodies.len());
-    let unknowns = split_bodies.iter().map(|made| made.dofs.len()).sum();
     let mut bodies = reserved(split_bodies.len(), WHAT)?;
     (all.parts, all.starts) = (reserved(bodies.capacity(), WHAT)?, reserved(bodies.capacity() + 1, WHAT)?);
-    (all.dofs, all.shares) = (reserved(unknowns, WHAT)?, Vec::new());
+    all.dofs = reserved(split_bodies.len(), WHAT)?;
+    let mut end = 0;
     for MadePart { own, part, dofs, shares } in split_bodies {
-        all.starts.push(all.dofs.len());
+        all.starts.push(end);
         if !shares.is_empty() {
-            all.shares.resize(all.dofs.len(), 1.0);
+            all.shares.resize(end, 1.0);
             all.shares.extend(shares);
         }
-        all.dofs.extend_from_slice(&dofs);
+        end += own.order;
+        all.dofs.push(dofs);
         all.parts.push(part);
         let revisions = host.bodies[part.body].revisions;
         bodies.push(GivenBody { body: own, revisions, ..GivenBody::default() });
     }
-    all.starts.push(all.dofs.len());
+    all.starts.push(end);
     Ok((bodies, all))
 }
 
-/// A part with its unknowns within the body, and its weights there if others have copies.
+/// A part with its unknowns within the body, if it has not all, and its weights there if others have copies.
 struct MadePart {
     own: Body,
     part: Part,
-    dofs: Arc<[u32]>,
+    dofs: Option<Arc<[u32]>>,
     shares: Vec<f64>,
 }
 
-/// The unknowns, among all unknowns of the host, that rows, joints or loads touch.
+/// The unknowns that rows, joints or loads touch, of bodies that are not given elsewhere, one after the other.
 pub fn touched(host: &HostModel, joints: &[Joint]) -> Result<Vec<bool>> {
-    let mut touched = filled(host.sizes().dofs, false, WHAT)?;
+    let starts = host.starts();
+    let mut touched = filled(starts[host.bodies.len()], false, WHAT)?;
+    let place = |j: usize| match starts {
+        Cow::Borrowed(_) => Some(j),
+        Cow::Owned(_) => {
+            let body = host.offsets[1..].partition_point(|end| *end <= j);
+            Some(starts[body] + j - host.offsets[body]).filter(|at| *at < starts[body + 1])
+        }
+    };
     for rows in [&host.contact, &host.equalities, &host.friction.rows] {
         let own = (0..rows.len()).flat_map(|i| rows.matrix.row(i)).map(|(j, _)| j);
-        own.filter(|j| *j < NAMED).for_each(|j| touched[j] = true);
+        own.filter(|j| *j < NAMED).filter_map(place).for_each(|at| touched[at] = true);
     }
-    joints.iter().flat_map(|joint| joint.ends).for_each(|j| touched[j] = true);
-    for (given, first) in host.bodies.iter().zip(&host.offsets) {
+    joints.iter().flat_map(|joint| joint.ends).filter_map(place).for_each(|at| touched[at] = true);
+    for (given, first) in host.bodies.iter().zip(&*starts) {
         let loads = given.body.load.iter().flatten().enumerate();
         loads.filter(|(_, f)| **f != 0.0).for_each(|(i, _)| touched[first + i] = true);
     }
@@ -85,9 +96,10 @@ pub fn touched(host: &HostModel, joints: &[Joint]) -> Result<Vec<bool>> {
 struct Split<'a> {
     given: &'a GivenBody,
     body: usize,
-    /// Rows, joints or loads touch this unknown of the host.
+    /// Rows, joints or loads touch this unknown, as `touched` counts them.
     held: &'a dyn Fn(usize) -> bool,
-    /// First unknown of the body among all unknowns of the host.
+    /// First unknown of the body among these, and among all unknowns of the host.
+    held_from: usize,
     first: usize,
     /// Unknowns that are left out of all parts.
     loose: &'a mut Vec<usize>,
@@ -95,12 +107,9 @@ struct Split<'a> {
 
 impl Split<'_> {
     /// A body that is its only part: its matrix and functions are shared, not copied.
-    fn whole(&self) -> Result<MadePart> {
-        let own = self.given.body.without_load();
-        let mut dofs = reserved(own.order, WHAT)?;
-        dofs.extend(0..own.order as u32);
+    fn whole(&self) -> MadePart {
         let part = Part { body: self.body, piece: 0, whole: true };
-        Ok(MadePart { own, part, dofs: dofs.into(), shares: Vec::new() })
+        MadePart { own: self.given.body.without_load(), part, dofs: None, shares: Vec::new() }
     }
 
     /// A body on another rank, where its parts have been made.
@@ -110,8 +119,7 @@ impl Split<'_> {
             let other = Some(Box::new(OtherForm::Elsewhere(there.clone())));
             let own = Body { order: *order, other, ..Body::default() };
             let part = Part { body: self.body, piece: 0, whole: dofs.is_none() };
-            let dofs = dofs.clone().unwrap_or_else(|| (0..*order as u32).collect());
-            MadePart { own, part, dofs, shares: Vec::new() }
+            MadePart { own, part, dofs: dofs.clone(), shares: Vec::new() }
         });
         Ok(made.collect())
     }
@@ -119,7 +127,7 @@ impl Split<'_> {
     /// A body of several components. At least one part remains.
     fn components(&mut self, components: &Components, k: &Symmetric) -> Result<Vec<MadePart>> {
         let first_loose = self.loose.len();
-        let empty = components.empty(k)?.filter(|&i| !(self.held)(self.first + i));
+        let empty = components.empty(k)?.filter(|&i| !(self.held)(self.held_from + i));
         let mut loose: Vec<usize> = empty.collect();
         loose.truncate(components.count - 1);
         self.loose.extend(loose.iter().map(|i| self.first + i));
@@ -134,7 +142,7 @@ impl Split<'_> {
             let null_space = null_space.map(|given| given.on(&dofs, &stiffness).map(Box::new)).transpose()?;
             let own = Body { null_space, ..self.part_of(&dofs, stiffness)? };
             let part = Part { body: self.body, piece: 0, whole: false };
-            made.push(MadePart { own, part, dofs, shares: Vec::new() });
+            made.push(MadePart { own, part, dofs: Some(dofs), shares: Vec::new() });
         }
         Ok(made)
     }
@@ -181,7 +189,7 @@ impl Split<'_> {
         };
         let mut loose = reserved(components.count, WHAT)?;
         let is_loose =
-            |i: &usize| copies[dofs[*i] as usize] == 1 && !(self.held)(self.first + dofs[*i] as usize);
+            |i: &usize| copies[dofs[*i] as usize] == 1 && !(self.held)(self.held_from + dofs[*i] as usize);
         loose.extend(components.empty(stiffness)?.filter(is_loose));
         loose.truncate(components.count - 1);
         self.loose.extend(loose.iter().map(|&i| self.first + dofs[i] as usize));
@@ -209,7 +217,7 @@ impl Split<'_> {
         shares.extend(dofs.iter().enumerate().map(share));
         let own = Body { fixing: None, ..self.part_of(&dofs, stiffness)? };
         let part = Part { body: self.body, piece, whole: false };
-        Ok(MadePart { own, part, dofs, shares })
+        Ok(MadePart { own, part, dofs: Some(dofs), shares })
     }
 }
 

@@ -22,14 +22,13 @@ impl Copies {
         }
         let order = host.bodies[body].body.order;
         let mut ptr = filled(order + 1, 0, WHAT)?;
-        let dofs = |part: usize| parts.dofs[parts.starts[part]..parts.starts[part + 1]].iter();
-        parts.of(body).flat_map(dofs).for_each(|&dof| ptr[dof as usize + 1] += 1);
+        parts.of(body).flat_map(|part| parts.dofs_of(part)).for_each(|dof| ptr[dof + 1] += 1);
         (0..order).for_each(|dof| ptr[dof + 1] += ptr[dof]);
         let (mut next, mut copies) = (ptr.clone(), filled(ptr[order], (0, 0), WHAT)?);
         for part in parts.of(body) {
-            for (i, &dof) in dofs(part).enumerate() {
-                copies[next[dof as usize]] = (part as u32, i as u32);
-                next[dof as usize] += 1;
+            for (i, dof) in parts.dofs_of(part).enumerate() {
+                copies[next[dof]] = (part as u32, i as u32);
+                next[dof] += 1;
             }
         }
         Ok(Some(Self { ptr, copies }))

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::body::Assembled;
 use crate::error::Result;
-use crate::platform::memory::{reserved, zeros};
+use crate::platform::memory::zeros;
 
 const WHAT: &str = "the parts of bodies";
 
@@ -20,8 +20,8 @@ pub struct Parts {
     /// First unknown of every part, and their end.
     pub starts: Vec<usize>,
     pub parts: Vec<Part>,
-    /// Number of every unknown of the parts within its body; within a part they ascend.
-    pub dofs: Vec<u32>,
+    /// Of every part the numbers of its unknowns within the body, ascending; none if it has all.
+    pub dofs: Vec<Option<Arc<[u32]>>>,
     /// Weight of the parts at their unknowns (the weights of all copies sum to 1); beyond its end they have the only copies.
     pub shares: Vec<f64>,
     /// K of the bodies that are cut.
@@ -72,13 +72,13 @@ impl Parts {
 
     /// Number of unknown i of a part within its body, and the weight of the part there.
     pub fn place(&self, part: usize, i: usize) -> (usize, f64) {
-        let at = self.starts[part] + i;
-        (self.dofs[at] as usize, self.shares.get(at).copied().unwrap_or(1.0))
+        let dof = self.dofs[part].as_ref().map_or(i, |dofs| dofs[i] as usize);
+        (dof, self.shares.get(self.starts[part] + i).copied().unwrap_or(1.0))
     }
 
     /// The unknowns of a part within its body, ascending.
-    pub fn dofs_of(&self, part: usize) -> &[u32] {
-        &self.dofs[self.starts[part]..self.starts[part + 1]]
+    pub fn dofs_of(&self, part: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.starts[part + 1] - self.starts[part]).map(move |i| self.place(part, i).0)
     }
 
     /// The only part of a body, if it has all unknowns of the body.
@@ -96,17 +96,7 @@ impl Parts {
 
     /// The values of a part from values over the unknowns of its body.
     pub fn gather<'a>(&'a self, part: usize, of_body: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let unknowns = self.starts[part + 1] - self.starts[part];
-        (0..unknowns).map(move |i| of_body[self.place(part, i).0])
-    }
-
-    /// Copies values over the unknowns of the host's bodies to all parts.
-    pub fn spread(&self, of_host: &[f64]) -> Result<Vec<f64>> {
-        let mut all = reserved(self.starts.last().copied().unwrap_or(0), WHAT)?;
-        for part in 0..self.parts.len() {
-            all.extend(self.gather(part, &of_host[self.offsets[self.parts[part].body]..]));
-        }
-        Ok(all)
+        self.dofs_of(part).map(|dof| of_body[dof])
     }
 
     /// The weighted mean of the copies, over the unknowns of the host's bodies.

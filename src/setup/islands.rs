@@ -6,12 +6,8 @@ use std::sync::Arc;
 use crate::body::{Away, Local, Locals, Seen};
 use crate::certificate::{Certificate, Entry};
 use crate::constraints::{FrictionNode, RowKind, RowSet, Taken, Touched};
-use crate::error::Result;
 use crate::linalg::by_body::Ranges;
 use crate::model::{Lengths, SolvedModel};
-use crate::platform::memory::copied;
-
-const WHAT: &str = "groups of bodies";
 
 /// Bodies joined by rows, with their own numbering: unknowns body after body, rows in the order of the host.
 #[derive(Clone)]
@@ -110,12 +106,6 @@ impl Island {
     pub fn row(&self, i: usize) -> (&RowSet, usize) {
         let (kind, place) = self.kind_and_place(i);
         (&self.members(kind).rows, place)
-    }
-
-    /// Copies the values of the island from values over all unknowns.
-    pub fn gather(&self, model: &SolvedModel, all: &[f64]) -> Result<Vec<Vec<f64>>> {
-        let own = |&p: &usize| copied(&all[model.range(p)], WHAT);
-        self.bodies.iter().map(own).collect()
     }
 
     /// Copies values over the unknowns of the island to values over all unknowns.

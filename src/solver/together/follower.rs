@@ -109,7 +109,7 @@ impl Follower {
                 let name = first + part as u64;
                 told.push(PartTold {
                     order: own.order,
-                    dofs: (!known.parts[part].whole).then(|| known.dofs_of(part).into()),
+                    dofs: known.dofs[part].clone(),
                     facts: Facts::of(own).ok_or_else(missing)?,
                 });
                 self.rank.bodies.keep_body(name, own.without_load());
@@ -152,7 +152,7 @@ impl Follower {
         let mut all = zeros(parts.offsets.last().copied().unwrap_or(0), "displacements")?;
         for (part, name) in names.iter().enumerate() {
             let own = &mut all[parts.offsets[parts.parts[part].body]..];
-            let places = parts.dofs_of(part).iter().map(|dof| *dof as usize);
+            let places = parts.dofs_of(part);
             match name {
                 Some(name) => {
                     places.zip(self.rank.bodies.taken_vector(*name)?).for_each(|(i, v)| own[i] += v)

@@ -7,8 +7,8 @@ use decks::random::Random;
 use super::{add_row, bits, number_chain, on_ranks, N};
 use crate::body::Name;
 use crate::error::Kind;
-use crate::solver::tests::lent::set_chains;
-use crate::solver::{BodyFacts, Outcome, Problem};
+use crate::solver::tests::lent::{set_chains, set_springs};
+use crate::solver::{BodyFacts, Outcome, Problem, RowKind, RowsInput};
 
 const COUNT: usize = 5;
 
@@ -156,4 +156,46 @@ fn a_second_step_makes_only_what_has_changed() {
         let [.., factorise, _, _] = asked(problem);
         assert_eq!(factorise - first[3], u64::from(rank == 1), "new values on rank 1");
     });
+}
+
+/// Three bars, each on its rank, the upper two on the one before: bytes of all messages of a second step and its check.
+fn bytes_of_a_step(n: usize) -> u64 {
+    let bytes = on_ranks(3, |rank, problem| {
+        let body = problem.add_body(n).unwrap();
+        let springs = (0..n).map(|i| {
+            let ends = usize::from(i > 0 || rank == 0) + usize::from(i + 1 < n);
+            (if i > 0 { -3.0 } else { 0.0 }, 3.0 * ends as f64)
+        });
+        set_springs(problem, body, springs);
+        let numbers: Vec<i64> = (0..n as i64).map(|i| i + (rank * n) as i64).collect();
+        problem.set_numbering(body, &numbers).unwrap();
+        if rank > 0 {
+            let ends = [(rank * n) as i64 - 1, (rank * n) as i64];
+            let rows =
+                RowsInput { ptr: &[0, 2], body: None, dof: &ends, val: &[1.0, -1.0], rhs: Some(&[0.1]) };
+            problem.add_rows(RowKind::Inequality, rows).unwrap();
+        }
+        let mut load = vec![0.0; n];
+        let mut step = |problem: &mut Problem, force: f64| {
+            load[n - 1] = force;
+            problem.set_load(body, &load).unwrap();
+            let before = problem.traffic().bytes;
+            assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+            let u = problem.displacement(body).unwrap().to_vec();
+            assert!(u.iter().all(|u| *u < 0.0));
+            let forces = problem.multipliers(RowKind::Inequality).unwrap().to_vec();
+            assert!(problem.check(&u, &forces, &[]).unwrap().passed());
+            problem.traffic().bytes - before
+        };
+        step(problem, -1.0);
+        step(problem, -2.0)
+    });
+    bytes[0]
+}
+
+/// Neither loads nor displacements of other ranks come to rank 0.
+#[test]
+fn what_is_said_in_a_step_to_other_ranks_does_not_depend_on_the_length_of_bars() {
+    let [short, long, longest] = [50, 100, 200].map(bytes_of_a_step);
+    assert!(short == long && long == longest, "{short} {long} {longest}");
 }
