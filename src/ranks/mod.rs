@@ -4,6 +4,7 @@
 //! Rank 0 sends one request to each rank that it needs, works itself, and receives the answers in the order of the ranks. Nobody sends
 //! unasked, and one request at most waits for its answer: the exchange cannot lock.
 
+mod alone;
 mod frame;
 #[cfg(any(test, feature = "loopback"))]
 pub mod loopback;
@@ -65,23 +66,6 @@ pub struct Traffic {
     pub seconds_waited: f64,
 }
 
-/// There are no other ranks.
-struct Nobody;
-
-impl Link for Nobody {
-    fn send(&self, _: usize, _: &[u8]) -> bool {
-        false
-    }
-
-    fn flush(&self) -> bool {
-        true
-    }
-
-    fn receive(&self, _: usize, _: &mut [u8]) -> bool {
-        false
-    }
-}
-
 /// One question to one rank.
 pub struct Request {
     pub rank: usize,
@@ -121,11 +105,6 @@ impl Ranks {
             dropped: Mutex::default(),
             traffic: Mutex::default(),
         })
-    }
-
-    /// The only rank.
-    pub fn alone() -> Arc<Self> {
-        Self::new(0, 1, Box::new(Nobody))
     }
 
     /// The other ranks answer no more: what they kept is lost.

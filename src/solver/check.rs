@@ -8,11 +8,11 @@ use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::model::HostModel;
 use crate::solve::{named, Case};
+use crate::solver::call::Call;
 use crate::solver::decomposed::{of_host, solved};
 pub use crate::solver::joints::left_over;
 use crate::solver::joints::with_glue;
 use crate::solver::problem::Problem;
-use crate::solver::together::Call;
 
 /// An answer over all unknowns and rows.
 #[derive(Clone, Copy)]

@@ -8,7 +8,6 @@ use crate::gathering::{Order, Revised, Told};
 use crate::model::{BodyRevisions, Revisions};
 use crate::serving::Rank;
 use crate::solve::Answer;
-use crate::solver::made::BodyMade;
 
 /// The part of this rank in a problem of several.
 pub struct Joined {
@@ -64,6 +63,15 @@ pub struct Follower {
     pub made: Vec<(BodyRevisions, BodyMade)>,
     /// Its numbers, ascending, and how many of them rank 0 has, during a call.
     pub numbers: Option<(Vec<usize>, usize)>,
+}
+
+/// What rank 0 has made of a body on another rank.
+#[derive(Debug, Clone, Default)]
+pub struct BodyMade {
+    /// Of every part the name of its K+ there, and its unit.
+    pub kplus: Vec<(u64, f64)>,
+    /// Bytes of the dual operator; none if it is not assembled.
+    pub operator: Option<usize>,
 }
 
 impl Follower {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::body::GeneralizedInverse;
 use crate::model::BodyRevisions;
 use crate::setup::{Duals, Inverse};
-use crate::solver::joined::{Follower, Role};
+use crate::solver::joined::{BodyMade, Follower, Role};
 use crate::solver::problem::Problem;
 
 /// A part of a body, and its K+.
@@ -13,15 +13,6 @@ pub struct MadePart<'a> {
     /// Its unknowns within the body, ascending; none: all.
     dofs: Option<&'a [u32]>,
     pub inverse: Arc<Inverse>,
-}
-
-/// What rank 0 has made of a body on another rank.
-#[derive(Debug, Clone, Default)]
-pub struct BodyMade {
-    /// Of every part the name of its K+ there, and its unit.
-    pub kplus: Vec<(u64, f64)>,
-    /// Bytes of the dual operator; none if it is not assembled.
-    pub operator: Option<usize>,
 }
 
 impl MadePart<'_> {

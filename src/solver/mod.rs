@@ -1,6 +1,7 @@
 //! The problem of a host: its input, what is computed from it, its results.
 
 mod body_facts;
+mod call;
 mod check;
 mod decomposed;
 mod findings;
@@ -35,7 +36,7 @@ pub use crate::ranks::{Link, Ranks, Traffic};
 pub use crate::serving::{serve, Rank};
 pub use crate::solve::{DualMethod, HostForm, Outcome, Report, RowState};
 pub use body_facts::{BodyFacts, Factors, Origin};
+pub use call::Call;
 pub use check::Candidate;
 pub use findings::Findings;
 pub use problem::Problem;
-pub use together::Call;

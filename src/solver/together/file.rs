@@ -9,9 +9,10 @@ use crate::gathering::At;
 use crate::model::file::write::{body, lengths, section, Bodies};
 use crate::model::HostModel;
 use crate::ranks::value;
+use crate::solver::call::Call;
 use crate::solver::problem::Problem;
 use crate::solver::together::leader::Leading;
-use crate::solver::together::messages::{Begun, Call, Finish, LENGTHS, SECTION_OF_FILE};
+use crate::solver::together::messages::{Begun, Finish, LENGTHS, SECTION_OF_FILE};
 use crate::solver::together::Brought;
 
 impl Problem {

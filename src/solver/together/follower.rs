@@ -13,14 +13,15 @@ use crate::platform::memory::zeros;
 use crate::platform::threads;
 use crate::ranks::{message, value, Incoming, Ranks, Wire, END};
 use crate::serving::answer;
+use crate::solver::call::Call;
 use crate::solver::check::{left_over, Candidate};
 use crate::solver::joined::Follower;
 use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::file::section_of;
 use crate::solver::together::messages::{
-    Begin, Begun, Call, Called, Candidates, Finish, PartTold, PartsTold, Touch, Touched, BEGIN, CANDIDATES,
-    FINISH, LENGTHS, LOADS, NUMBERS, SECTION_OF_FILE, TOUCH,
+    Begin, Begun, Called, Candidates, Finish, PartTold, PartsTold, Touch, Touched, BEGIN, CANDIDATES, FINISH,
+    LENGTHS, LOADS, NUMBERS, SECTION_OF_FILE, TOUCH,
 };
 use crate::solver::together::{panicked, ready_part, Brought};
 

@@ -13,11 +13,10 @@ use crate::model::Revisions;
 use crate::progress::LogLevel;
 use crate::ranks::value;
 use crate::solver::together::leader::Leading;
-use crate::solver::together::messages::{Begun, PartTold, PartsTold, Touch, Touched, LOADS, NUMBERS, TOUCH};
+use crate::solver::together::messages::{
+    Begun, PartTold, PartsTold, Touch, Touched, BLOCK, LOADS, NUMBERS, TOUCH,
+};
 use crate::solver::together::ready_part;
-
-/// Names of what a rank keeps, from the first on.
-pub(super) const BLOCK: u64 = 1 << 40;
 
 impl Leading<'_> {
     pub(super) fn gather(&mut self, begun: Vec<(usize, Begun)>) -> Result<()> {

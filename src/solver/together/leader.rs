@@ -8,14 +8,13 @@ use crate::error::{Error, Kind, Result};
 use crate::gathering::{is_numbered, At, Revised};
 use crate::ranks::{value, Ranks, Request, Token, Wire};
 use crate::solve::Stays;
+use crate::solver::call::Call;
 use crate::solver::check::{left_over, Candidate};
-use crate::solver::joined::Leader;
-use crate::solver::made::BodyMade;
+use crate::solver::joined::{BodyMade, Leader};
 use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
-use crate::solver::together::gather::BLOCK;
 use crate::solver::together::messages::{
-    Begin, Begun, Call, Called, Candidates, Finish, BEGIN, CANDIDATES, FINISH,
+    Begin, Begun, Called, Candidates, Finish, BEGIN, BLOCK, CANDIDATES, FINISH,
 };
 use crate::solver::together::split::Split;
 use crate::solver::together::{for_one_rank, panicked, Brought};

@@ -5,10 +5,13 @@ use std::sync::Arc;
 use crate::body::{wire_struct, Facts};
 use crate::certificate::Certificate;
 use crate::gathering::{Copies, Revised, Told, Values};
-use crate::ranks::wire_enum;
-use crate::solver::made::BodyMade;
+use crate::solver::call::Call;
+use crate::solver::joined::BodyMade;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::share::Share;
+
+/// Names of what a rank keeps, from the first on.
+pub const BLOCK: u64 = 1 << 40;
 
 /// Requests beside those about bodies.
 pub const BEGIN: u32 = crate::serving::BEGIN;
@@ -22,41 +25,11 @@ pub const CANDIDATES: u32 = 9;
 pub const LENGTHS: u32 = 7;
 pub const SECTION_OF_FILE: u32 = 8;
 
-/// A call that all ranks make.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Call {
-    Setup,
-    Solve,
-    Check,
-    SaveState,
-    RestoreState,
-    OpenMotion,
-    Dependent,
-    Write,
-    Read,
-}
-
 /// A call with the number that all ranks have to give: of a state or a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Called {
     pub call: Call,
     pub number: u64,
-}
-
-impl Call {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Setup => "feti_setup",
-            Self::Solve => "feti_solve",
-            Self::Check => "feti_check",
-            Self::SaveState => "feti_state_save",
-            Self::RestoreState => "feti_state_restore",
-            Self::OpenMotion => "feti_diagnosis_undetermined",
-            Self::Dependent => "feti_diagnosis_dependent",
-            Self::Write => "feti_problem_write",
-            Self::Read => "feti_problem_read",
-        }
-    }
 }
 
 /// Which call rank 0 is in, and what it knows of the part of this rank.
@@ -132,7 +105,6 @@ pub struct Finish {
     pub fits: bool,
 }
 
-wire_enum!(Call { Setup, Solve, Check, SaveState, RestoreState, OpenMotion, Dependent, Write, Read });
 wire_struct!(Called { call, number });
 wire_struct!(Begin { problem, called, known });
 wire_struct!(Begun { problem, leads, called, refused, told, values, forces, fits });

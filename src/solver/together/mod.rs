@@ -22,13 +22,13 @@ use crate::model::HostModel;
 use crate::ranks::Ranks;
 use crate::serving::Rank;
 use crate::solve::Report;
+use crate::solver::call::Call;
 use crate::solver::check::Candidate;
 use crate::solver::findings::rigid_motion;
 use crate::solver::joined::{Follower, Joined, Leader, Role};
 use crate::solver::problem::Problem;
 use crate::solver::undetermined::OpenMotion;
 use leader::Leading;
-pub use messages::Call;
 use messages::{Called, Finish};
 
 impl Problem {

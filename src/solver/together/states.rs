@@ -1,11 +1,12 @@
 //! States of a problem of several ranks: each saves and restores its own, under one number; rank 0 also the last answer of all.
 
 use crate::error::Result;
+use crate::solver::call::Call;
 use crate::solver::history::Current;
 use crate::solver::joined::{Role, SavedByAll};
 use crate::solver::problem::Problem;
 use crate::solver::together::leader::Leading;
-use crate::solver::together::messages::Call;
+
 use crate::solver::together::Brought;
 
 impl Problem {
