@@ -54,9 +54,7 @@ fn asked(problem: &mut Problem, body: usize) -> Asked {
 
 #[test]
 fn a_rank_can_ask_what_was_made_of_its_own_bodies() {
-    let mut problem = Problem::new();
-    (0..COUNT).for_each(|p| add(&mut problem, p));
-    (1..COUNT).for_each(|p| add_row(&mut problem, p));
+    let mut problem = serial();
     problem.setup().unwrap();
     let serial: Vec<Asked> = (0..COUNT).map(|p| asked(&mut problem, p)).collect();
     on_ranks(3, |rank, problem| {
@@ -199,4 +197,35 @@ fn what_is_said_in_a_step_to_other_ranks_does_not_depend_on_the_length_of_bars()
     let [short, long, longest] = [50, 100, 200].map(bytes_of_a_step);
     let differs = |bytes: u64| bytes.abs_diff(short) * 50 > short;
     assert!(!differs(long) && !differs(longest), "{short} {long} {longest}");
+}
+
+/// The chains in their order, on one rank.
+fn serial() -> Problem {
+    let mut problem = Problem::new();
+    (0..COUNT).for_each(|p| add(&mut problem, p));
+    (1..COUNT).for_each(|p| add_row(&mut problem, p));
+    problem
+}
+
+/// One rank that may share its problem takes the order of several, and is asked in its own.
+#[test]
+fn one_rank_alone_tells_what_was_made_in_the_order_of_its_host() {
+    let mut serial = serial();
+    let x: Vec<f64> = (1..COUNT).map(|p| 1.0 / p as f64).collect();
+    let (mut image, mut d) = (vec![0.0; COUNT - 1], vec![0.0; COUNT - 1]);
+    serial.dual_apply(&x, &mut image).unwrap();
+    serial.dual_rhs(&mut d).unwrap();
+    let made: Vec<Asked> = (0..COUNT).map(|p| asked(&mut serial, p)).collect();
+    on_ranks(1, |_, problem| {
+        (0..COUNT).rev().for_each(|p| add(problem, p));
+        (1..COUNT).rev().for_each(|p| add_row(problem, p));
+        let x: Vec<f64> = x.iter().rev().copied().collect();
+        let (mut own_image, mut own_d) = (vec![0.0; COUNT - 1], vec![0.0; COUNT - 1]);
+        problem.dual_apply(&x, &mut own_image).unwrap();
+        problem.dual_rhs(&mut own_d).unwrap();
+        own_image.reverse();
+        own_d.reverse();
+        assert_eq!((bits(&own_image), bits(&own_d)), (bits(&image), bits(&d)));
+        made.iter().rev().enumerate().for_each(|(body, of)| assert_eq!(asked(problem, body), *of, "{body}"));
+    });
 }

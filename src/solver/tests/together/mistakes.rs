@@ -224,3 +224,51 @@ fn what_one_rank_refuses_in_a_call_of_all() {
         }
     }
 }
+
+#[test]
+fn a_row_whose_square_overflows_and_friction_that_holds_too_little() {
+    let overflow = told(|problem, wrong| {
+        if wrong {
+            row(problem, RowKind::Equality, &[2], &[1e200], 0.0);
+        }
+        solved(problem)
+    });
+    are_equal(&overflow, Kind::Overflow);
+    let slides = told(|problem, wrong| {
+        if wrong {
+            let body = add_unnumbered(problem, &[1.0, -1.0, 1.0]);
+            problem.set_numbering(body, &[900, 901]).unwrap();
+            problem.set_load(body, &[1.0, 1.0]).unwrap();
+            let rows = RowsInput { ptr: &[0, 1], body: None, dof: &[900], val: &[1.0], rhs: None };
+            let bound = Some(&[0.1][..]);
+            let node = FrictionInput { dim: 1, normal: &[-1], rows, coefficient: None, bound };
+            problem.add_friction(node).unwrap();
+        }
+        solved(problem)
+    });
+    for (by, errors) in slides.iter().enumerate() {
+        for error in errors {
+            assert!(matches!(error.kind, Kind::Slides | Kind::LoadNotHeld), "{error}");
+            assert_eq!((error.place.rank, error.place.body), (Some(by), Some(1)), "{error}");
+        }
+    }
+}
+
+#[test]
+fn a_limit_of_time_ends_the_call_on_all_ranks() {
+    let ends = on_ranks(RANKS, |rank, problem| {
+        give(problem, rank);
+        // the time of rank 0 counts
+        problem.set_f64("time_limit", if rank == 0 { 1e-9 } else { 1e9 }).unwrap();
+        let first = solved(problem);
+        problem.set_f64("time_limit", 1e9).unwrap();
+        (first, solved(problem))
+    });
+    for (first, second) in ends {
+        assert!(
+            first == Ok(Outcome::Time) || first.as_ref().is_err_and(|error| error.kind == Kind::TimeOver),
+            "{first:?}"
+        );
+        assert_eq!(second, Ok(Outcome::Solved));
+    }
+}
