@@ -203,6 +203,44 @@ static void another_thread(void)
     EXPECT(FETI_OK, feti_mpi_serve(MPI_COMM_WORLD));
 }
 
+static void *solves_again_and_again(void *comm)
+{
+    feti_problem *p = created();
+
+    EXPECT(FETI_OK, feti_mpi(p, *(MPI_Comm *)comm));
+    gives(p);
+    if (rank == 0) EXPECT(FETI_OK, stop(p, size - 1));
+    for (int k = 0; k < 20; k++) EXPECT(FETI_OK, feti_solve(p, NULL));
+    EXPECT(FETI_OK, feti_problem_destroy(&p));
+    return NULL;
+}
+
+/* Parts of two problems, each with a communicator and a thread of its own. */
+static void two_threads(void)
+{
+    MPI_Comm own[2];
+    pthread_t threads[2];
+    int level;
+
+    MPI_Query_thread(&level);
+    CHECK(level == MPI_THREAD_MULTIPLE);
+    for (int k = 0; k < 2; k++) MPI_Comm_dup(MPI_COMM_WORLD, &own[k]);
+    for (int k = 0; k < 2; k++) CHECK(pthread_create(&threads[k], NULL, solves_again_and_again, &own[k]) == 0);
+    for (int k = 0; k < 2; k++) pthread_join(threads[k], NULL);
+    for (int k = 0; k < 2; k++) MPI_Comm_free(&own[k]);
+}
+
+/* The last rank never makes the call: MPI_Abort ends the others, which wait for it. */
+static void a_rank_that_leaves(void)
+{
+    feti_problem *p = created();
+
+    EXPECT(FETI_OK, feti_mpi(p, MPI_COMM_WORLD));
+    gives(p);
+    if (rank == size - 1) MPI_Abort(MPI_COMM_WORLD, 3);
+    feti_solve(p, NULL);
+}
+
 /* Long and short messages to the next rank and back, without the library. */
 static void messages(void)
 {
@@ -238,6 +276,8 @@ static const struct {
     { "parts", parts_of_every_rank },
     { "freed", a_communicator_freed_before_its_problem },
     { "thread", another_thread },
+    { "threads", two_threads },
+    { "leaves", a_rank_that_leaves },
     { "messages", messages },
 };
 
@@ -250,7 +290,7 @@ int main(int argc, char **argv)
 
     if (outside) refuses(MPI_COMM_WORLD);
     if (strcmp(name, "single") == 0) MPI_Init(&argc, &argv);
-    else MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
+    else MPI_Init_thread(&argc, &argv, strcmp(name, "threads") == 0 ? MPI_THREAD_MULTIPLE : MPI_THREAD_FUNNELED, &level);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     for (size_t k = 0; k < sizeof CASES / sizeof CASES[0]; k++)

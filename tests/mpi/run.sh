@@ -105,7 +105,10 @@ for mpi in "$@"; do
         for example in $examples; do same "$mpi" "./${example}_fortran"; done
         same "$mpi" ./lends
         same "$mpi" ./gives
-        for case in single freed thread outside; do same "$mpi" ./hostile "$case"; done
+        for case in single freed thread threads outside; do same "$mpi" ./hostile "$case"; done
+        ended=0
+        run "$mpi" 2 ./hostile leaves >printed 2>errors || ended=$?
+        [ "$ended" -ne 0 ] && [ "$ended" -ne 124 ] || fail "$mpi: MPI_Abort does not end ranks that wait ($ended)"
         [ -z "${LENDING-}" ] || limit=600 same "$mpi" ./files "$PROBLEMS"/*.feti
         by_cmake "$mpi" "$([ "$mpi" = mpich ] && echo libmpich || echo libmpi)"
     done
