@@ -2,6 +2,7 @@
 //! numbers rank by rank.
 
 use std::cmp::Ordering;
+use std::collections::HashMap;
 
 use crate::gathering::places::At;
 use crate::gathering::told::{RowsTold, Told};
@@ -21,19 +22,44 @@ pub fn bodies(told: &[Told]) -> Vec<At> {
     bodies
 }
 
-/// Rows of one kind by the numbers of their entries, then by values, right-hand sides and compliances.
+/// Rows of one kind by the numbers of their entries, then by values, right-hand sides and compliances; equal contact rows by their nodes.
 pub fn rows(told: &[Told], kind: usize, is_numbered: bool) -> Vec<At> {
     let mut rows = all(told.iter().map(|of| of.rows[kind].len()));
     if is_numbered {
+        let of_rows = |of: &Told| if kind == 0 { nodes_of_rows(of) } else { HashMap::new() };
+        let nodes: Vec<HashMap<usize, usize>> = told.iter().map(of_rows).collect();
+        let node = |at: &At| Some((&told[at.rank], *nodes[at.rank].get(&at.number)?));
         rows.sort_by(|a, b| {
             let of = |at: &At| (&told[at.rank].rows[kind], at.number);
-            compared(of(a), of(b))
+            let by_node = || match (node(a), node(b)) {
+                (Some(a), Some(b)) => compared_nodes(a, b),
+                (a, b) => a.is_some().cmp(&b.is_some()),
+            };
+            compared(of(a), of(b)).then_with(by_node)
         });
     }
     rows
 }
 
-/// Nodes by their tangential rows, then by their contact rows; `normal`: the place of a contact row in the order.
+/// The node of every contact row that has one.
+fn nodes_of_rows(of: &Told) -> HashMap<usize, usize> {
+    of.nodes.iter().enumerate().filter_map(|(k, node)| Some((node.normal?, k))).collect()
+}
+
+/// By their tangential rows, then by their laws.
+fn compared_nodes((a, k): (&Told, usize), (b, l): (&Told, usize)) -> Ordering {
+    let mut each =
+        a.nodes[k].rows().zip(b.nodes[l].rows()).map(|(i, j)| compared((&a.rows[2], i), (&b.rows[2], j)));
+    let first = each.find(|order| *order != Ordering::Equal);
+    let law = |of: &Told, k: usize| [of.nodes[k].coefficient, of.nodes[k].bound];
+    let by_law = || {
+        let mut each = law(a, k).into_iter().zip(law(b, l)).map(|(a, b)| a.total_cmp(&b));
+        each.find(|order| *order != Ordering::Equal).unwrap_or(Ordering::Equal)
+    };
+    first.unwrap_or_else(by_law)
+}
+
+/// Nodes by their tangential rows and laws, then by their contact rows; `normal`: the place of a contact row in the order.
 pub fn nodes(told: &[Told], is_numbered: bool, normal: impl Fn(At) -> usize) -> Vec<At> {
     let mut nodes = all(told.iter().map(|of| of.nodes.len()));
     if is_numbered {
@@ -42,11 +68,8 @@ pub fn nodes(told: &[Told], is_numbered: bool, normal: impl Fn(At) -> usize) -> 
             row.map(|number| normal(At { rank: at.rank, number }))
         };
         nodes.sort_by(|a, b| {
-            let rows = |at: &At| told[at.rank].nodes[at.number].rows();
-            let own = |at: &At| &told[at.rank].rows[2];
-            let mut each = rows(a).zip(rows(b)).map(|(i, j)| compared((own(a), i), (own(b), j)));
-            let first = each.find(|order| *order != Ordering::Equal);
-            first.unwrap_or_else(|| normal(a).cmp(&normal(b)))
+            let of = |at: &At| (&told[at.rank], at.number);
+            compared_nodes(of(a), of(b)).then_with(|| normal(a).cmp(&normal(b)))
         });
     }
     nodes

@@ -503,3 +503,12 @@ fn problems_dealt_out_to_ranks_have_the_bits_of_one_rank() {
         compare("driven", seed, &soft::random::driven(seed), (softly, ""));
     }
 }
+
+/// Two nodes have equal contact rows, but other friction.
+#[test]
+fn equal_contact_rows_with_unequal_friction_come_in_one_order() {
+    let deck = coulomb::drawn::case(176, &coulomb::drawn::SIZES).deck;
+    let row = |i: usize| deck.contact.matrix.row(i);
+    assert!(row(1).eq(row(2)) && deck.contact.rhs[1] == deck.contact.rhs[2]);
+    (176..184).for_each(|seed| compare("equal rows", seed, &deck, (exact, "")));
+}

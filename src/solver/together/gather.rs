@@ -20,7 +20,8 @@ use crate::solver::together::ready_part;
 
 impl Leading<'_> {
     pub(super) fn gather(&mut self, begun: Vec<(usize, Begun)>) -> Result<()> {
-        let (told, values) = self.told(begun)?;
+        let (mut told, values) = self.told(begun)?;
+        told.iter_mut().zip(&values).for_each(|(of, values)| of.refresh(values));
         let now: Vec<Revised> = told.iter().map(|of| of.revisions).collect();
         if self.leader.made_from != now {
             self.rebuild(&told, now)?;
