@@ -13,7 +13,7 @@ pub fn of_host(host: &HostModel, parts: &Parts, mut error: Error) -> Error {
         if error.kind == Kind::Memory && parts.is_cut(body) {
             // the host knows a piece only by its elements
             let mesh: Option<&Mesh> = host.bodies[body].mesh.as_deref();
-            error.place.element = mesh.and_then(|mesh| mesh.first_of(parts.parts[part].piece));
+            error.place.element = mesh.and_then(|mesh| mesh.first_of(parts.parts[part].piece as usize));
         }
         let unknowns = parts.starts[part + 1] - parts.starts[part];
         let dof = error.place.dof.filter(|dof| *dof < unknowns);

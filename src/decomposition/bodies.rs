@@ -43,16 +43,18 @@ pub fn parts(
     all.first.push(split_bodies.len());
     let mut bodies = reserved(split_bodies.len(), WHAT)?;
     (all.parts, all.starts) = (reserved(bodies.capacity(), WHAT)?, reserved(bodies.capacity() + 1, WHAT)?);
-    all.dofs = reserved(split_bodies.len(), WHAT)?;
+    let listed = |made: &MadePart| made.dofs.as_ref().map_or(0, |dofs| dofs.len());
+    all.dofs = reserved(split_bodies.iter().map(listed).sum(), WHAT)?;
     let mut end = 0;
-    for MadePart { own, part, dofs, shares } in split_bodies {
+    for MadePart { own, mut part, dofs, shares } in split_bodies {
         all.starts.push(end);
         if !shares.is_empty() {
             all.shares.resize(end, 1.0);
             all.shares.extend(shares);
         }
         end += own.order;
-        all.dofs.push(dofs);
+        part.first = all.dofs.len();
+        dofs.iter().for_each(|dofs| all.dofs.extend_from_slice(dofs));
         all.parts.push(part);
         let revisions = host.bodies[part.body].revisions;
         bodies.push(GivenBody { body: own, revisions, ..GivenBody::default() });
@@ -108,7 +110,7 @@ struct Split<'a> {
 impl Split<'_> {
     /// A body that is its only part: its matrix and functions are shared, not copied.
     fn whole(&self) -> MadePart {
-        let part = Part { body: self.body, piece: 0, whole: true };
+        let part = Part { body: self.body, piece: 0, whole: true, first: 0 };
         MadePart { own: self.given.body.without_load(), part, dofs: None, shares: Vec::new() }
     }
 
@@ -118,7 +120,7 @@ impl Split<'_> {
         let made = parts.iter().map(|PartThere { order, dofs, there }| {
             let other = Some(Box::new(OtherForm::Elsewhere(there.clone())));
             let own = Body { order: *order, other, ..Body::default() };
-            let part = Part { body: self.body, piece: 0, whole: dofs.is_none() };
+            let part = Part { body: self.body, piece: 0, whole: dofs.is_none(), first: 0 };
             MadePart { own, part, dofs: dofs.clone(), shares: Vec::new() }
         });
         Ok(made.collect())
@@ -141,7 +143,7 @@ impl Split<'_> {
             let null_space = self.given.body.null_space.as_ref();
             let null_space = null_space.map(|given| given.on(&dofs, &stiffness).map(Box::new)).transpose()?;
             let own = Body { null_space, ..self.part_of(&dofs, stiffness)? };
-            let part = Part { body: self.body, piece: 0, whole: false };
+            let part = Part { body: self.body, piece: 0, whole: false, first: 0 };
             made.push(MadePart { own, part, dofs: Some(dofs), shares: Vec::new() });
         }
         Ok(made)
@@ -216,7 +218,7 @@ impl Split<'_> {
         };
         shares.extend(dofs.iter().enumerate().map(share));
         let own = Body { fixing: None, ..self.part_of(&dofs, stiffness)? };
-        let part = Part { body: self.body, piece, whole: false };
+        let part = Part { body: self.body, piece: piece as u32, whole: false, first: 0 };
         Ok(MadePart { own, part, dofs: Some(dofs), shares })
     }
 }

@@ -20,8 +20,8 @@ pub struct Parts {
     /// First unknown of every part, and their end.
     pub starts: Vec<usize>,
     pub parts: Vec<Part>,
-    /// Of every part the numbers of its unknowns within the body, ascending; none if it has all.
-    pub dofs: Vec<Option<Arc<[u32]>>>,
+    /// Numbers within their bodies of the unknowns of parts that are not whole bodies; within a part they ascend.
+    pub dofs: Vec<u32>,
     /// Weight of the parts at their unknowns (the weights of all copies sum to 1); beyond its end they have the only copies.
     pub shares: Vec<f64>,
     /// K of the bodies that are cut.
@@ -40,9 +40,11 @@ pub struct Part {
     /// Body of the host.
     pub body: usize,
     /// Number of the piece of the body that it belongs to, if the body is cut.
-    pub piece: usize,
+    pub piece: u32,
     /// It is the body.
     pub whole: bool,
+    /// Place of its first unknown in `dofs`, if it is not.
+    pub first: usize,
 }
 
 /// Two unknowns that move together.
@@ -72,8 +74,15 @@ impl Parts {
 
     /// Number of unknown i of a part within its body, and the weight of the part there.
     pub fn place(&self, part: usize, i: usize) -> (usize, f64) {
-        let dof = self.dofs[part].as_ref().map_or(i, |dofs| dofs[i] as usize);
+        let Part { whole, first, .. } = self.parts[part];
+        let dof = if whole { i } else { self.dofs[first + i] as usize };
         (dof, self.shares.get(self.starts[part] + i).copied().unwrap_or(1.0))
+    }
+
+    /// The unknowns of a part within its body, ascending; none if it has all.
+    pub fn listed(&self, part: usize) -> Option<&[u32]> {
+        let Part { whole, first, .. } = self.parts[part];
+        (!whole).then(|| &self.dofs[first..first + self.starts[part + 1] - self.starts[part]])
     }
 
     /// The unknowns of a part within its body, ascending.

@@ -55,7 +55,7 @@ impl Problem {
         if solved.bodies.get(range.start).map(|given| given.revisions) != Some(now) {
             return Vec::new();
         }
-        let dofs = |part: usize| self.parts()?.dofs[part].as_deref();
+        let dofs = |part: usize| self.parts()?.listed(part);
         let made = |part: usize| {
             let inverse = self.prepared.inverse(solved, part)?;
             Some(MadePart { dofs: dofs(part), inverse: Arc::clone(inverse) })
@@ -94,7 +94,7 @@ impl Follower {
         let (Some((of, made)), Some(known)) = (self.made.get(body), &self.parts) else { return Vec::new() };
         let Some(parts) = known.model.parts.as_deref().filter(|_| *of == now) else { return Vec::new() };
         let part = |(part, (name, unit)): (usize, &(u64, f64))| {
-            let dofs = parts.dofs[part].as_deref();
+            let dofs = parts.listed(part);
             let inverse = Inverse {
                 unit: *unit,
                 kplus: self.rank.bodies.kplus_named(*name)?,

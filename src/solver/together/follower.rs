@@ -110,7 +110,7 @@ impl Follower {
                 let name = first + part as u64;
                 told.push(PartTold {
                     order: own.order,
-                    dofs: known.dofs[part].clone(),
+                    dofs: known.listed(part).map(Arc::from),
                     facts: Facts::of(own).ok_or_else(missing)?,
                 });
                 self.rank.bodies.keep_body(name, own.without_load());
