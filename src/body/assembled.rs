@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::Result;
+use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::{graph, Symmetric};
 use crate::platform::memory::{filled, reserved, zeros};
@@ -48,23 +49,15 @@ impl Assembled {
 
     /// K as one matrix. Of an entry that several pieces have, their values are added in the order of the pieces.
     pub fn sum(&self) -> Result<Symmetric> {
-        let (n, entries) = (self.order(), self.entries());
-        let mut ends = filled(n + 1, 0usize, WHAT)?;
-        self.each_entry(|i, _, _| ends[i + 1] += 1);
-        (0..n).for_each(|i| ends[i + 1] += ends[i]);
-        let mut all = filled(entries, (0u32, 0.0), WHAT)?;
-        self.each_entry(|i, j, v| {
-            all[ends[i]] = (j as u32, v);
-            ends[i] += 1;
-        });
-        let mut sum = Symmetric::with_room(n, entries, WHAT)?;
-        let mut begin = 0;
-        for end in &ends[..n] {
-            let row = &mut all[begin..*end];
+        let (ptr, col, val) = by_columns(self.order(), || self.lower_entries(), WHAT)?;
+        let mut sum = Symmetric::with_room(self.order(), val.len(), WHAT)?;
+        for ends in ptr.windows(2) {
+            let own = ends[0]..ends[1];
+            let mut row: Vec<(u32, f64)> =
+                col[own.clone()].iter().copied().zip(val[own].iter().copied()).collect();
             row.sort_by_key(|(j, _)| *j);
             let same = row.chunk_by(|a, b| a.0 == b.0);
             sum.push_row(same.map(|of| (of[0].0 as usize, of.iter().map(|(_, v)| v).sum())));
-            begin = *end;
         }
         Ok(sum)
     }
@@ -168,11 +161,15 @@ impl Assembled {
 
     /// Row, column and value of every entry of the lower triangles of the pieces.
     pub fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
-        for (dofs, k) in &self.pieces {
-            for (i, &dof) in dofs.iter().enumerate() {
-                k.lower_row(i).for_each(|(j, v)| visit(dof as usize, dofs[j] as usize, v));
-            }
-        }
+        self.lower_entries().for_each(|(j, i, v)| visit(i, j as usize, v));
+    }
+
+    /// Column, row and value of these.
+    fn lower_entries(&self) -> impl Iterator<Item = (u32, usize, f64)> + '_ {
+        self.pieces.iter().flat_map(|(dofs, k)| {
+            let row = move |i: usize| k.lower_row(i).map(move |(j, v)| (dofs[j], dofs[i] as usize, v));
+            (0..dofs.len()).flat_map(row)
+        })
     }
 
     /// `work(K_s, A_s'x)` of every piece, in the order of the pieces.

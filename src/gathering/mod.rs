@@ -71,12 +71,17 @@ impl Order {
         self.bodies.iter().copied().zip(0..).collect()
     }
 
-    /// Of every body its first unknown among those of its rank.
-    pub fn starts(&self) -> Vec<usize> {
+    /// The bodies rank by rank in the order of their numbers there, each with its number here.
+    pub fn by_ranks(&self) -> Vec<(At, usize)> {
         let mut bodies: Vec<(At, usize)> = self.bodies.iter().copied().zip(0..).collect();
         bodies.sort_unstable();
-        let (mut starts, mut end) = (vec![0; bodies.len()], (0, 0));
-        for (at, body) in bodies {
+        bodies
+    }
+
+    /// Of every body its first unknown among those of its rank.
+    pub fn starts(&self) -> Vec<usize> {
+        let (mut starts, mut end) = (vec![0; self.bodies.len()], (0, 0));
+        for (at, body) in self.by_ranks() {
             let start = if at.rank == end.0 { end.1 } else { 0 };
             starts[body] = start;
             end = (at.rank, start + self.offsets[body + 1] - self.offsets[body]);

@@ -125,9 +125,7 @@ impl Told {
             revisions: Revised::of(model),
         })
     }
-}
 
-impl Told {
     /// Takes over what has changed without a new setup: the order of equal rows depends on it.
     pub fn refresh(&mut self, values: &Values) {
         self.rows.iter_mut().zip(&values.rhs).for_each(|(rows, rhs)| rows.rhs.clone_from(rhs));

@@ -7,6 +7,14 @@ use crate::platform::memory::{copied, zeros};
 
 const WHAT: &str = "forces of glue";
 
+/// The unknowns of joints, ascending.
+pub fn ends(joints: &[Joint]) -> Vec<usize> {
+    let mut ends: Vec<usize> = joints.iter().flat_map(|joint| joint.ends).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    ends
+}
+
 /// Multipliers of the host's equality rows, then of the joints, with the joint forces that bring the answer closest to
 /// equilibrium: the residual `f - K u - B'lambda` of an unknown is passed to the next unknown with its number and remains
 /// at the last one. `left`: `f - K u` of these unknowns.
@@ -19,9 +27,7 @@ pub fn with_glue(
     if joints.is_empty() {
         return Ok(all);
     }
-    let mut unknowns: Vec<usize> = joints.iter().flat_map(|joint| joint.ends).collect();
-    unknowns.sort_unstable();
-    unknowns.dedup();
+    let unknowns = ends(&joints);
     let mut left = left(&unknowns)?;
     let at = |j: usize| unknowns.binary_search(&j).ok();
     for kind in RowKind::ALL {

@@ -71,8 +71,8 @@ pub extern "C" fn feti_body_no_null_space(p: *mut feti_problem, body: i64) -> i3
 
 /// Reads the null space that the library uses for a body.
 ///
-/// Runs feti_setup when it is due; on several ranks as feti_body_kplus. If K is not connected, the columns are those of one connected part after the other,
-/// zero on all other parts. Unknowns without stiffness that no row and no load touches have no column.
+/// Runs feti_setup when it is due; on several ranks as feti_body_kplus. If K is not connected, the columns are those of
+/// one connected part after the other, zero on all other parts. Unknowns without stiffness that no row and no load touches have no column.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -121,8 +121,8 @@ pub unsafe extern "C" fn feti_body_null_space_get(
 
 /// Reads the fixing unknowns of a body: with them fixed, K has full rank.
 ///
-/// Runs feti_setup when it is due; on several ranks as feti_body_kplus. FETI_UNSUPPORTED if the host provides K+ (feti_body_operator). FETI_STATE if the
-/// body is cut into pieces (feti_body_mesh_i32 or _i64).
+/// Runs feti_setup when it is due; on several ranks as feti_body_kplus. FETI_UNSUPPORTED if the host provides K+
+/// (feti_body_operator). FETI_STATE if the body is cut into pieces (feti_body_mesh_i32 or _i64).
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

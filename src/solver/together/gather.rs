@@ -112,10 +112,8 @@ impl Leading<'_> {
         if self.leader.expected.take().is_some_and(|expected| expected.rows != order.rows) {
             self.all.history().previous = None;
         }
-        let own = order.bodies.iter().zip(0..).filter(|(at, _)| at.rank == 0);
-        let mut own: Vec<(&At, usize)> = own.collect();
-        own.sort_unstable();
-        self.leader.own = own.into_iter().map(|(_, body)| body).collect();
+        let own = order.by_ranks().into_iter().take_while(|(at, _)| at.rank == 0);
+        self.leader.own = own.map(|(_, body)| body).collect();
         (self.leader.order, self.leader.made_from, self.leader.shared) = (Arc::new(order), now, shared);
         Ok(())
     }
@@ -212,9 +210,7 @@ impl Leading<'_> {
             let all = largest.into_iter().zip(names).map(|(largest, name)| LoadThere { name, largest });
             loads[rank] = all.collect::<Vec<_>>().into_iter();
         }
-        let mut bodies: Vec<(At, usize)> = self.leader.order.bodies.iter().copied().zip(0..).collect();
-        bodies.sort_unstable();
-        for (At { rank, number }, body) in bodies {
+        for (At { rank, number }, body) in self.leader.order.by_ranks() {
             let to = &mut self.all.model.contents.bodies[body].body;
             if rank == 0 {
                 to.load.clone_from(&self.own.model.bodies[number].body.load);

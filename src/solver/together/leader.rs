@@ -11,6 +11,7 @@ use crate::solve::Stays;
 use crate::solver::call::Call;
 use crate::solver::check::{left_over, Candidate};
 use crate::solver::joined::{BodyMade, Leader};
+use crate::solver::joints::ends;
 use crate::solver::problem::Problem;
 use crate::solver::together::failure::Failure;
 use crate::solver::together::messages::{
@@ -185,7 +186,8 @@ impl Leading<'_> {
         let answer = all.current().map(|current| &*current.answer).filter(|_| call == Call::Solve);
         let with = answer.map(|answer| (answer, &all.stays));
         let split = Split::new(&self.leader.order, &all.model, self.ranks.size, with)?;
-        let names = |rank: usize| split.names(rank, all.parts(), &all.stays);
+        let named = all.stays.names.iter().map(|(part, name)| (*part, name.number)).collect();
+        let names = |rank: usize| split.names(rank, all.parts(), &named);
         let failure = ended.err().map(|error| Failure(split.error(error)));
         Ok(self.each(|rank| Finish {
             failure: failure.clone(),
@@ -236,11 +238,8 @@ impl Leading<'_> {
     fn left_over(&mut self, own: &[f64]) -> Result<(HashMap<usize, Arc<Token>>, HashMap<usize, f64>)> {
         self.all.decompose()?;
         let (order, model) = (&self.leader.order, &self.all.model);
-        let mut ends: Vec<usize> = model.joints()?.iter().flat_map(|joint| joint.ends).collect();
-        ends.sort_unstable();
-        ends.dedup();
         let mut of_rank: Vec<Vec<(usize, (usize, usize))>> = vec![Vec::new(); self.ranks.size];
-        for j in ends {
+        for j in ends(&model.joints()?) {
             let body = model.offsets[1..].partition_point(|end| *end <= j);
             let At { rank, number } = order.bodies[body];
             of_rank[rank].push((j, (number, j - model.offsets[body])));
@@ -258,10 +257,8 @@ impl Leading<'_> {
             let values: Vec<f64> = value(&answer)?;
             left.extend(of_rank[rank].iter().map(|(j, _)| *j).zip(values));
         }
-        let mut bodies: Vec<(At, usize)> = order.bodies.iter().copied().zip(0..).collect();
-        bodies.sort_unstable();
         let (mut names, mut next) = (HashMap::new(), firsts);
-        for (At { rank, .. }, body) in bodies.into_iter().filter(|(at, _)| at.rank > 0) {
+        for (At { rank, .. }, body) in order.by_ranks().into_iter().filter(|(at, _)| at.rank > 0) {
             for part in self.all.parts_of(body) {
                 names.insert(part, Arc::new(self.ranks.named(rank, next[rank])));
                 next[rank] += 1;

@@ -19,11 +19,11 @@ pub const NUMBERS: u32 = 3;
 pub const TOUCH: u32 = 4;
 pub const LOADS: u32 = 5;
 pub const FINISH: u32 = 6;
-/// An answer to be checked: `Candidates`.
-pub const CANDIDATES: u32 = 9;
 /// Of a problem file: bytes of the sections of every body; one section of a body, by these numbers.
 pub const LENGTHS: u32 = 7;
 pub const SECTION_OF_FILE: u32 = 8;
+/// An answer to be checked: `Candidates`.
+pub const CANDIDATES: u32 = 9;
 
 /// A call with the number that all ranks have to give: of a state or a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -94,12 +94,11 @@ impl<'a> Split<'a> {
         Ok(Self { order, model, own: all, others })
     }
 
-    /// Of the parts of every body of a rank, in their order there, what their displacements are called there.
-    pub fn names(&self, rank: usize, parts: Option<&Parts>, stays: &Stays) -> Vec<Option<u64>> {
-        let of: HashMap<usize, u64> = stays.names.iter().map(|(part, name)| (*part, name.number)).collect();
+    /// Of the parts of every body of a rank, in their order there, those of what stays on other ranks: `names`, by parts.
+    pub fn names(&self, rank: usize, parts: Option<&Parts>, names: &HashMap<usize, u64>) -> Vec<Option<u64>> {
         let own = self.own[rank].bodies.iter();
         own.flat_map(|body| parts.map_or(*body..body + 1, |parts| parts.of(*body)))
-            .map(|part| of.get(&part).copied())
+            .map(|part| names.get(&part).copied())
             .collect()
     }
 
@@ -139,8 +138,11 @@ impl<'a> Split<'a> {
 
     /// Of rank 0; the others have theirs.
     fn own_displacements(&self, rank: usize, all: &[f64]) -> Vec<f64> {
+        if rank > 0 {
+            return Vec::new();
+        }
         let starts = self.model.starts();
-        let own = self.own[rank].bodies.iter().filter(|_| rank == 0);
+        let own = self.own[rank].bodies.iter();
         own.flat_map(|body| &all[starts[*body]..starts[body + 1]]).copied().collect()
     }
 
