@@ -90,8 +90,26 @@ END
     same "$1" cmake/cmake_fortran
 }
 
+# by_fpm MPI: a host under fpm depends on the installed sources by path.
+by_fpm() {
+    mkdir fpm fpm/app
+    cp -R "$prefix/share/feti_contact" fpm/moved
+    cp "$fortran/demo.f90" "$fortran/16_body_per_rank.f90" fpm/app
+    cat >fpm/fpm.toml <<END
+name = "host"
+executable = [{ name = "host", main = "16_body_per_rank.f90" }]
+dependencies.feti-contact-mpi.path = "moved/mpi"
+dependencies.feti-contact.path = "moved/fortran"
+build.external-modules = ["mpi_f08"]
+END
+    (cd fpm && "$fpm" install --prefix out --compiler "mpifort.$1" --c-compiler "mpicc.$1" --c-flag "$(pkg --cflags)" --link-flag "$link") \
+        >fpm.log 2>&1 || { cat fpm.log; exit 1; }
+    same "$1" fpm/out/bin/host
+}
+
 mkdir -p "$work"
 work=$(cd "$work" && pwd)
+fpm=$(sh "$root/tests/packaging/fpm_from_pypi.sh" "$work/fpm")
 for mpi in "$@"; do
     for chunk in whole 4096; do
         place=$work/$mpi.$chunk
@@ -111,6 +129,7 @@ for mpi in "$@"; do
         [ "$ended" -ne 0 ] && [ "$ended" -ne 124 ] || fail "$mpi: MPI_Abort does not end ranks that wait ($ended)"
         [ -z "${LENDING-}" ] || limit=600 same "$mpi" ./files "$PROBLEMS"/*.feti
         by_cmake "$mpi" "$([ "$mpi" = mpich ] && echo libmpich || echo libmpi)"
+        by_fpm "$mpi"
     done
     "$work/$mpi.whole/hostile" unknown >/dev/null 2>&1 && fail "hostile accepts any case"
 done

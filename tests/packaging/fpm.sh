@@ -1,9 +1,7 @@
 #!/bin/sh
-# fpm.sh HOSTS PREFIX VENV: the host under fpm, outside the source tree, depends on the installed Fortran sources by path. fpm
-# comes from PyPI into VENV, once.
+# fpm.sh HOSTS PREFIX VENV: the host under fpm, outside the source tree, depends on the installed Fortran sources by path.
 set -eu
-version=0.12.0
-[ -x "$3/bin/fpm" ] || { python3 -m venv "$3" && "$3/bin/pip" install --quiet --disable-pip-version-check "fpm==$version"; }
+fpm=$(sh "$1/fpm_from_pypi.sh" "$3")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cp -R "$2" "$work/moved"
@@ -13,5 +11,5 @@ cp "$1/host.expected" "$1/fpm/fpm.toml" "$work"
 cd "$work"
 export PKG_CONFIG_PATH="$work/moved/lib/pkgconfig"
 rpath="-Wl,-rpath,$(pkg-config --variable=libdir feti_contact)"
-"$3/bin/fpm" install --prefix "$work/out" --link-flag "$(pkg-config --libs feti_contact) $rpath" >log 2>&1 || { cat log; exit 1; }
+"$fpm" install --prefix "$work/out" --link-flag "$(pkg-config --libs feti_contact) $rpath" >log 2>&1 || { cat log; exit 1; }
 sh "$1/same.sh" host.expected out/bin/host
