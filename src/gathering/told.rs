@@ -72,7 +72,7 @@ pub struct Values {
 }
 
 /// Options that each rank has of its own; for all others those of rank 0 count.
-const OF_EACH_RANK: [&str; 5] = ["threads", "memory_limit", "pieces", "glue", "index_base"];
+const OF_EACH_RANK: [&str; 4] = ["threads", "pieces", "glue", "index_base"];
 
 wire_struct!(Told { bodies, rows, dim, nodes, is_numbered, glue, revisions });
 wire_struct!(Revised { of, numberings });

@@ -80,7 +80,7 @@ settings! {
     max_steps: i64 = I64(10_000), 1.0..=MANY,
         c"Number of steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far, unless the direct method completes the answer (option direct_limit).";
     memory_limit: i64 = I64(0), 0.0..=MANY,
-        c"Largest number of bytes for factors and dual operators; 0: no limit. Dual operators that do not fit are applied matrix-free (option dual_operator); if the limit would still be exceeded, the call returns FETI_MEMORY before it allocates anything.";
+        c"Largest number of bytes for factors and dual operators, of all ranks together; 0: no limit. Dual operators that do not fit are applied matrix-free (option dual_operator); if the limit would still be exceeded, the call returns FETI_MEMORY before it allocates anything.";
     threads: i64 = I64(0), 0.0..=4096.0,
         c"Number of threads for the setup and for expensive products with the dual operator (at most one thread for 500 unknowns and four for a CPU); 0: as many as the CPUs that this process may use. The answer has the same bits for any number.";
     pieces: i64 = I64(0), 0.0..=1e6,

@@ -47,13 +47,13 @@ fn bodies_that_the_options_cut_are_whole_on_several_ranks_and_keep_their_analyse
     });
 }
 
-/// One unknown between springs of 4: K and K+ by functions.
-fn add_functions(problem: &mut Problem) -> usize {
+/// One unknown between springs of 4: K and K+ by functions, which return `fails`.
+fn add_functions(problem: &mut Problem, fails: i32) -> usize {
     let body = problem.add_body(1).unwrap();
     let product = |by: f64| {
         move |x: &[f64], _: usize, y: &mut [f64]| {
             y.iter_mut().zip(x).for_each(|(y, x)| *y = by * x);
-            0
+            fails
         }
     };
     let functions =
@@ -68,7 +68,7 @@ fn add_functions(problem: &mut Problem) -> usize {
 fn functions_of_the_host_are_called_on_rank_0_and_refused_on_others() {
     for at in 0..2 {
         let ends = on_ranks(2, |rank, problem| {
-            let body = if rank == at { Some(add_functions(problem)) } else { None };
+            let body = if rank == at { Some(add_functions(problem, 0)) } else { None };
             super::add_chain(problem, rank);
             if rank == 0 {
                 add_row(problem, 1);
@@ -97,5 +97,23 @@ fn functions_of_the_host_are_called_on_rank_0_and_refused_on_others() {
                 (Kind::Unsupported, Some(1), Some(0))
             );
         }
+    }
+}
+
+#[test]
+fn a_function_of_rank_0_that_fails_is_told_to_all() {
+    let ends = on_ranks(3, |rank, problem| {
+        super::add_chain(problem, rank);
+        if rank == 0 {
+            add_functions(problem, -7);
+        }
+        problem.solve().unwrap_err()
+    });
+    for error in ends {
+        assert_eq!(
+            (error.kind, error.place.rank, error.place.body),
+            (Kind::Callback, Some(0), Some(1)),
+            "{error}"
+        );
     }
 }

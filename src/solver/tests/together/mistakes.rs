@@ -255,6 +255,26 @@ fn a_row_whose_square_overflows_and_friction_that_holds_too_little() {
 }
 
 #[test]
+fn a_limit_of_memory_that_rank_0_has_counts_bodies_of_all_ranks() {
+    let ends = on_ranks(RANKS, |rank, problem| {
+        give(problem, rank);
+        // that of others does not count
+        problem.set_i64("memory_limit", if rank == 0 { 200 } else { 1 }).unwrap();
+        let first = solved(problem);
+        problem.set_i64("memory_limit", if rank == 0 { 1 << 20 } else { 1 }).unwrap();
+        (first, solved(problem))
+    });
+    for (first, second) in ends {
+        let error = first.unwrap_err();
+        assert_eq!(
+            (error.kind, error.place.body, second),
+            (Kind::Memory, Some(0), Ok(Outcome::Solved)),
+            "{error}"
+        );
+    }
+}
+
+#[test]
 fn a_limit_of_time_ends_the_call_on_all_ranks() {
     let ends = on_ranks(RANKS, |rank, problem| {
         give(problem, rank);
