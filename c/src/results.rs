@@ -35,7 +35,8 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
         if body == FETI_ALL {
             // SAFETY: room for n numbers guaranteed by the caller.
             let output = unsafe { Output::new(u, whole(problem, n)?, "u") }?;
-            return problem.spread(problem.displacements()?, |at, value| output.write_at(at, &[value]));
+            return problem
+                .spread_displacement(problem.displacements()?, |at, value| output.write_at(at, &[value]));
         }
         let (body, n) = body_of_order(problem, body, n)?;
         // SAFETY: room for n numbers guaranteed by the caller.
@@ -79,8 +80,7 @@ pub unsafe extern "C" fn feti_reaction(
         if body == FETI_ALL {
             // SAFETY: room for n numbers guaranteed by the caller.
             let output = unsafe { Output::new(r, whole(problem, n)?, "r") }?;
-            let all = problem.summed(problem.reactions(kind)?)?;
-            return problem.spread(&all, |at, value| output.write_at(at, &[value]));
+            return problem.spread_reaction(kind, |at, value| output.write_at(at, &[value]));
         }
         let (body, n) = body_of_order(problem, body, n)?;
         // SAFETY: room for n numbers guaranteed by the caller.

@@ -7,17 +7,21 @@
 
 mod accumulator;
 mod decoupling;
+mod dof_table;
 mod entries;
 mod friction;
 mod grouping;
 mod kind;
+mod tabled;
 mod taken;
 mod touched;
 
 pub use decoupling::{Decoupling, UnitRows};
+pub use dof_table::{DofTable, DofTableInput};
 pub use friction::{Friction, FrictionInput, FrictionNode};
 pub use grouping::Grouping;
 pub use kind::RowKind;
+pub use tabled::{Resolved, Table};
 pub use taken::Taken;
 pub use touched::Touched;
 

@@ -32,6 +32,14 @@ impl RowSet {
         named.resize(rows, true);
     }
 
+    /// Takes over what was taken from those rows of another set that are also rows of this set.
+    pub fn keep_taken(&mut self, of: &Self, is_same: impl Fn(usize) -> bool) {
+        let Some(taken) = &of.taken else { return };
+        let own = self.taken.get_or_insert_default();
+        own.entries.extend(taken.entries.iter().filter(|row| is_same(**row)));
+        own.named.clone_from(&taken.named);
+    }
+
     /// Rows that lost all entries as rounding.
     pub fn cancelled(&self) -> &[usize] {
         self.taken.as_ref().map_or(&[], |taken| &taken.entries)

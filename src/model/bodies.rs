@@ -29,6 +29,7 @@ impl HostModel {
         if n == 0 {
             return Err(Error::argument("n", "a body has at least one unknown").value(0.0).limit(1.0));
         }
+        self.check_no_table()?;
         let first = self.sizes().dofs;
         let most = i64::MAX as usize - first;
         if n > most {

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
+use crate::constraints::Table;
 use crate::error::Result;
 use crate::model::contents::SolvedModel;
 use crate::model::parts::Joint;
@@ -22,6 +24,8 @@ pub struct HostModel {
     pub stays_whole: bool,
     /// Increased if the numbers of a body change.
     pub numberings: u64,
+    /// The host's table of unknowns, if it has given one.
+    pub table: Option<Arc<Table>>,
 }
 
 /// Without parts it is the model that is solved.
@@ -48,6 +52,7 @@ impl HostModel {
             has_others: false,
             stays_whole: false,
             numberings: 0,
+            table: None,
         }
     }
 

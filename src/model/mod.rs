@@ -14,6 +14,7 @@ mod pieces;
 mod row_sets;
 mod settings;
 mod settings_text;
+mod tables;
 mod words;
 
 pub use accuracy::{Accuracy, Lengths};

@@ -49,6 +49,7 @@ impl HostModel {
         if self.bodies[body].numbers.as_deref() == Some(&numbers) {
             return Ok(());
         }
+        self.check_no_table()?;
         let was_shared = self.shares_numbers();
         let (unknowns, bodies) = (&mut self.unknowns, &mut self.contents.bodies);
         let bytes = numbers.len() * size_of::<(usize, (usize, usize))>();
@@ -82,7 +83,7 @@ impl HostModel {
     }
 
     /// Whether the bodies have numbers: either all or none must have.
-    fn is_numbered(&self) -> Result<bool> {
+    pub(super) fn is_numbered(&self) -> Result<bool> {
         let numbers = self.unknowns.len();
         if numbers == 0 || numbers == self.sizes().dofs {
             return Ok(numbers > 0);
@@ -98,6 +99,14 @@ impl HostModel {
     }
 
     pub fn check_whole(&self, n: usize) -> Result<()> {
+        if let Some(table) = &self.table {
+            let end = table.dofs.len();
+            let what = format!("the table has {end} unknowns, not {n}");
+            return match n >= end {
+                true => Ok(()),
+                false => Err(Error::argument("n", what).value(n as f64).limit(end as f64)),
+            };
+        }
         let numbered = self.is_numbered()?;
         let largest = self.bodies.iter().filter_map(|given| given.numbers.as_deref()?.iter().max());
         let end = if numbered { largest.max().map_or(0, |most| most + 1) } else { self.sizes().dofs };
@@ -149,6 +158,9 @@ impl HostModel {
 
     pub fn set_all_loads(&mut self, f: &[f64]) -> Result<()> {
         self.check_whole(f.len())?;
+        if let Some(table) = self.table.clone() {
+            return self.set_loads_by(&table, f);
+        }
         let mut loads = reserved(self.bodies.len(), "the loads")?;
         for given in &self.bodies {
             loads.push(reserved(given.body.order, "a load")?);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::constraints::{Friction, FrictionInput, RowKind, RowSet, RowsInput};
+use crate::constraints::{Friction, FrictionInput, Resolved, RowKind, RowSet, RowsInput};
 use crate::error::{Error, Proof, Result};
 use crate::model::contents::{Counted, SolvedModel};
 use crate::model::host::HostModel;
@@ -13,9 +13,11 @@ pub const PER_ENTRY: usize = 128;
 
 impl HostModel {
     pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
+        let (given, resolved) = (rows, self.resolved(rows)?);
+        let rows = resolved.as_ref().map_or(rows, Resolved::input);
         let places = match rows.body {
-            Some(_) => None,
-            None => self.places_of(rows.ptr, rows.dof)?,
+            None if resolved.is_none() => self.places_of(rows.ptr, rows.dof)?,
+            _ => None,
         };
         let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
         let (all, end, is_named) = ([0, usize::MAX], self.sizes().dofs, self.has_others && places.is_some());
@@ -28,14 +30,17 @@ impl HostModel {
         }
         self.offsets = offsets;
         let first = added?;
+        self.keep_tabled(kind, first, given, resolved.is_some());
         self.revisions.rows += 1;
         Ok(first)
     }
 
     pub fn set_rhs(&mut self, kind: RowKind, first: usize, rhs: &[f64]) -> Result<()> {
-        if self.rows_mut(kind).set_rhs(kind, first, rhs)? {
+        let by_table = self.by_table(kind, first, rhs);
+        if self.rows_mut(kind).set_rhs(kind, first, by_table.as_deref().unwrap_or(rhs))? {
             self.revisions.laws += 1;
         }
+        self.keep_right_hand_sides(kind, first, rhs);
         Ok(())
     }
 
@@ -47,18 +52,21 @@ impl HostModel {
 
     pub fn clear_rows(&mut self, kind: RowKind) {
         *self.rows_mut(kind) = RowSet::default();
+        self.forget_tabled(kind);
         if kind != RowKind::Equality {
-            self.friction = Friction::default();
+            self.clear_friction();
         }
         self.revisions.rows += 1;
     }
 
     pub fn add_friction(&mut self, input: FrictionInput) -> Result<usize> {
-        let places = match input.rows.body {
-            Some(_) => None,
-            None => self.places_of(input.rows.ptr, input.rows.dof)?,
+        let (given, resolved) = (input.rows, self.resolved(input.rows)?);
+        let rows = resolved.as_ref().map_or(given, Resolved::input);
+        let places = match rows.body {
+            None if resolved.is_none() => self.places_of(rows.ptr, rows.dof)?,
+            _ => None,
         };
-        let rows = RowsInput { dof: places.as_deref().unwrap_or(input.rows.dof), ..input.rows };
+        let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
         let (all, end, is_named) = ([0, usize::MAX], self.sizes().dofs, self.has_others && places.is_some());
         let SolvedModel { friction, contact, offsets, .. } = &mut self.contents;
         let of = if is_named { &all[..] } else { &offsets[..] };
@@ -67,6 +75,7 @@ impl HostModel {
             friction.rows.name(first * friction.dim);
             Arc::make_mut(&mut friction.rows.matrix).cols = end;
         }
+        self.keep_tabled(RowKind::Tangential, first * input.dim, given, resolved.is_some());
         self.revisions.rows += 1;
         Ok(first)
     }
@@ -98,9 +107,12 @@ impl HostModel {
         dim: usize,
         s_old: &[f64],
     ) -> Result<()> {
-        if self.friction.set_reference(first, count, dim, s_old)? {
+        let row = first.saturating_mul(self.friction.dim);
+        let by_table = self.by_table(RowKind::Tangential, row, s_old);
+        if self.friction.set_reference(first, count, dim, by_table.as_deref().unwrap_or(s_old))? {
             self.revisions.laws += 1;
         }
+        self.keep_right_hand_sides(RowKind::Tangential, row, s_old);
         Ok(())
     }
 
@@ -111,6 +123,7 @@ impl HostModel {
 
     pub fn clear_friction(&mut self) {
         self.friction = Friction::default();
+        self.forget_tabled(RowKind::Tangential);
         self.revisions.rows += 1;
     }
 

@@ -22,8 +22,7 @@ impl Problem {
             Some(others) => others.reached.clone(),
             None => self.model.friction.reached(|j| answer.u[j], &answer.tangential)?,
         };
-        let (nodes, dim) = (self.model.friction.len(), self.model.friction.dim);
         self.history.commits += 1;
-        self.model.set_friction_reference(0, nodes, dim, &reached)
+        self.model.commit_reference(reached)
     }
 }

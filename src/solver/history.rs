@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::constraints::{Friction, RowKind, RowSet};
+use crate::constraints::{Friction, RowKind, RowSet, Table};
 use crate::model::SolvedModel;
 use crate::solve::{Answer, Start};
 
@@ -45,6 +45,8 @@ pub struct State {
     pub rows: [RowSet; 2],
     /// Nodes with friction: their laws, tangential rows, s_old and compliances.
     pub friction: Friction,
+    /// What these rows are in the host's table of unknowns.
+    pub table: Option<Arc<Table>>,
     pub previous: Option<Arc<Answer>>,
     /// `previous` was the answer for exactly these data.
     pub answered: bool,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::body::{Columns, HostFunctions, Modes, SparseInput, Storage};
-use crate::constraints::{FrictionInput, RowKind, RowsInput};
+use crate::constraints::{DofTableInput, FrictionInput, RowKind, RowsInput};
 use crate::error::Result;
 use crate::linalg::Borrowed;
 use crate::mesh::ElementStorage;
@@ -111,6 +111,10 @@ input! {
     /// number, the first gets the load.
     fn set_all_loads(&mut self, f: &[f64]) -> Result<()>;
 
+    /// The host's unknowns, of which those without number in K are combinations of others: `u = T v + g`. Rows without `body` name unknowns
+    /// of the table from now on, and arrays over all unknowns have its length. Another call replaces it: rows of the table follow.
+    fn set_dof_table(&mut self, table: DofTableInput<'_>) -> Result<()>;
+
     /// Adds rows and returns the number of the first among those of its kind. Without `body`, their unknowns are the
     /// host's numbers if there are any.
     fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize>;
@@ -194,6 +198,9 @@ input! {
     /// Passes the values of all bodies, one after the other, with their positions in an array over all unknowns; if
     /// several unknowns share a number, only the first.
     fn spread(&self, values: &[f64], to: impl FnMut(usize, f64)) -> Result<()>;
+
+    /// Passes the displacements of all unknowns of the host, also those that the table eliminates, with their positions.
+    fn spread_displacement(&self, u: &[f64], to: impl FnMut(usize, f64)) -> Result<()>;
 
     /// Values over all unknowns; the values of unknowns with the same number are summed at the first of them.
     fn summed(&self, values: Vec<f64>) -> Result<Vec<f64>>;

@@ -25,7 +25,7 @@ mod undetermined;
 
 pub use crate::body::{Columns, Digits, Doubt, HostFunctions, HostProduct, Modes, SparseInput, Storage};
 pub use crate::certificate::{Certificate, Entry, FrictionState};
-pub use crate::constraints::{FrictionInput, RowKind, RowsInput};
+pub use crate::constraints::{DofTableInput, FrictionInput, RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
 pub use crate::mesh::ElementStorage;

@@ -96,6 +96,13 @@ impl Problem {
         Ok(all)
     }
 
+    /// Passes the forces of `reaction` on all unknowns of the host, also those that the table eliminates, with their positions.
+    pub fn spread_reaction(&self, kind: Option<RowKind>, to: impl FnMut(usize, f64)) -> Result<()> {
+        let asked = RowKind::ALL.into_iter().filter(|of| kind.is_none_or(|kind| kind == *of));
+        let multipliers = asked.map(|of| Ok((of, self.multipliers(of)?))).collect::<Result<Vec<_>>>()?;
+        self.model.spread_reaction(self.reactions(kind)?, &multipliers, to)
+    }
+
     /// Amplitudes alpha of the null space of one body, in the basis `null_space` gives.
     pub fn amplitudes(&self, body: usize) -> Result<&[f64]> {
         Ok(&self.answer_on(body)?.alpha[body])

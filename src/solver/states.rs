@@ -32,6 +32,7 @@ impl Problem {
             loads: loads.collect::<Result<_>>()?,
             rows: [self.model.contact.copied(WHAT)?, self.model.equalities.copied(WHAT)?],
             friction: self.model.friction.copied(WHAT)?,
+            table: self.model.table.clone(),
             previous: self.history().previous.clone(),
             answered: self.current().is_some(),
         };
@@ -76,6 +77,7 @@ impl Problem {
         let previous = state.previous.clone();
         model.revisions.laws += u64::from(!same);
         (model.contact, model.equalities, model.friction) = (contact, equalities, friction);
+        model.table.clone_from(&state.table);
         model.bodies.iter_mut().zip(loads).for_each(|(given, load)| given.body.load = load);
         history.of(model.revisions.rows).start = [None, None, None];
         let answer = previous.clone().filter(|_| fits);
