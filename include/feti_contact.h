@@ -68,7 +68,7 @@
  * Bodies: Give each body its stiffness matrix and its load.
  *     feti_body_add feti_body_stiffness_i32 feti_body_stiffness_i64 feti_body_stiffness_split_i32
  *     feti_body_stiffness_split_i64 feti_body_stiffness_dense feti_body_load feti_body_numbering_i32
- *     feti_body_numbering_i64
+ *     feti_body_numbering_i64 feti_dof_table_i32 feti_dof_table_i64
  *
  * Null spaces: Give the motions that a matrix does not resist; otherwise the library finds them.
  *     feti_body_coordinates feti_body_coordinates_flags feti_body_null_space feti_body_no_null_space
@@ -318,6 +318,44 @@ int32_t feti_body_numbering_i32(feti_problem *p, int64_t body, int64_t n, const 
 /** As feti_body_numbering_i32, with 64-bit indices. */
 int32_t feti_body_numbering_i64(feti_problem *p, int64_t body, int64_t n, const int64_t *number,
                                 int32_t base);
+
+/**
+ * Names the unknowns of the host that its matrices do not have, with 32-bit indices: supports, prescribed
+ * values, multi-point constraints.
+ *
+ * Give the table if the host eliminates unknowns before it assembles K: usually one entry for every node
+ * and direction. An eliminated unknown is `u_i = constant_i + sum_k coefficient_k u_term(k)`; terms may be
+ * eliminated themselves. Afterwards rows whose `body` is NULL (feti_rows_add_i32, feti_friction_add_i32)
+ * name unknowns of the table, and the library eliminates what K does not have from their entries, gaps and
+ * slips. Arrays with FETI_ALL have an entry for each unknown of the table: feti_body_load takes loads on
+ * all of them, feti_displacement gives them all, and feti_reaction gives -B'lambda on all of them, also on
+ * eliminated ones, which is what a Newton loop subtracts from its residual. The forces of the supports
+ * stay with the host. In an increment, `constant` is what is left to go: the prescribed minus the present
+ * value.
+ *
+ * Another call replaces the table: the rows follow. With other constants alone, only right-hand sides
+ * change. FETI_STATE from feti_body_add and feti_body_numbering_i32 after this call. On several ranks the
+ * table names unknowns of its rank.
+ *
+ * @param n           unknowns of the host
+ * @param number      (n) number of the unknown of K, counted from `base`: that of feti_body_numbering_i32
+ *                    or, without such numbers, through all bodies; below `base`: eliminated. No number
+ *                    occurs twice
+ * @param ptr         (n + 1) unknown i has the terms `ptr[i]` to `ptr[i + 1] - 1`; starts with `base`;
+ *                    NULL: no unknown has terms
+ * @param term        (ptr[n] - base) unknown of the host, counted from `base`
+ * @param coefficient (ptr[n] - base) factor of each term
+ * @param constant    (n) length; 0 for unknowns of K; NULL: zeros
+ * @param base        0 or 1: what `number`, `ptr` and `term` count from
+ */
+int32_t feti_dof_table_i32(feti_problem *p, int64_t n, const int32_t *number, const int32_t *ptr,
+                           const int32_t *term, const double *coefficient, const double *constant,
+                           int32_t base);
+
+/** As feti_dof_table_i32, with 64-bit indices. */
+int32_t feti_dof_table_i64(feti_problem *p, int64_t n, const int64_t *number, const int64_t *ptr,
+                           const int64_t *term, const double *coefficient, const double *constant,
+                           int32_t base);
 
 /* ==== Null spaces ====
  * Give the motions that a matrix does not resist; otherwise the library finds them. */

@@ -17,6 +17,7 @@
 mod bodies;
 mod boundary;
 mod diagnosis;
+mod dof_table;
 mod file;
 mod friction;
 mod header;
@@ -40,6 +41,7 @@ mod tests;
 pub use bodies::*;
 pub use boundary::{feti_last_error, feti_last_error_detail};
 pub use diagnosis::*;
+pub use dof_table::*;
 pub use file::*;
 pub use friction::*;
 pub use header::status::*;

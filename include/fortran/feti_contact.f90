@@ -40,8 +40,8 @@ module feti_contact
   use feti_contact_bodies, only: feti_body_facts, feti_body_add => body_add, feti_body_null_space => body_null_space, &
     feti_body_no_null_space => body_no_null_space, feti_body_coordinates => body_coordinates, &
     feti_body_coordinates_flags => body_coordinates_flags, feti_body_load => body_load, feti_body_numbering => body_numbering, &
-    feti_body_components => body_components, feti_body_info => body_info, feti_body_null_space_get => body_null_space_get, &
-    feti_body_fixing_set => body_fixing_set
+    feti_dof_table => dof_table, feti_body_components => body_components, feti_body_info => body_info, &
+    feti_body_null_space_get => body_null_space_get, feti_body_fixing_set => body_fixing_set
   use feti_contact_elements, only: feti_body_mesh => body_mesh, feti_body_element => body_element, &
     feti_body_elements => body_elements, feti_body_elements_size => body_elements_size, &
     feti_body_held_forces => body_held_forces, feti_body_pieces => body_pieces

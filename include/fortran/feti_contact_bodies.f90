@@ -11,7 +11,7 @@ module feti_contact_bodies
   implicit none
   private
   public :: body_add, body_null_space, body_no_null_space, body_coordinates, body_coordinates_flags, body_load
-  public :: body_numbering, body_components, body_info, body_null_space_get, body_fixing_set, feti_body_facts
+  public :: body_numbering, dof_table, body_components, body_info, body_null_space_get, body_fixing_set, feti_body_facts
 
   !> Gives position and direction of every unknown of a body; the library computes candidates for the null space from
   !> them.
@@ -44,6 +44,17 @@ module feti_contact_bodies
   !> number(n): different for all unknowns of the body and, without option glue, of all bodies.
   interface body_numbering
     module procedure numbering_int32, numbering_int64
+  end interface
+
+  !> Names the unknowns of the host that its matrices do not have: supports, prescribed values, multi-point constraints.
+  !>
+  !> call feti_dof_table(p, number, ptr, term, coefficient, constant): number, ptr and term int32 or int64; ptr without
+  !>   entries: no unknown has terms.
+  !>
+  !> ptr(n + 1): unknown i has the terms `ptr(i)` to `ptr(i + 1) - 1`. coefficient(:): factor of each term. constant(n):
+  !> length; 0 for unknowns of K; absent: zeros.
+  interface dof_table
+    module procedure dof_table_int32, dof_table_int64
   end interface
 
 contains
@@ -165,6 +176,56 @@ contains
 
     call finish(feti_body_numbering_i64(handle_of(p), int(body - 1, c_int64_t), size(number, kind=c_int64_t), number, &
       1_c_int32_t), stat, errmsg)
+  end subroutine
+
+  !> int32.
+  recursive subroutine dof_table_int32(p, number, ptr, term, coefficient, constant, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(int32), intent(in), contiguous :: number(:), term(:)
+    integer(int32), intent(in), contiguous, target :: ptr(:)
+    real(real64), intent(in), contiguous :: coefficient(:)
+    real(real64), intent(in), contiguous, optional, target :: constant(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(c_ptr) :: address
+
+    address = c_null_ptr
+    if (size(ptr) > 0) address = c_loc(ptr)
+    if (all(size(ptr) /= [0, size(number) + 1])) then
+      call refuse(4, 'feti_dof_table: ptr has not one entry more than number', stat, errmsg)
+    else if (maxval(ptr) > min(size(term, kind=int64), size(coefficient, kind=int64)) + 1) then
+      call refuse(4, 'feti_dof_table: ptr points behind the end of term or coefficient', stat, errmsg)
+    else if (size_of(constant, size(number, kind=int64)) /= size(number, kind=int64)) then
+      call refuse(7, 'feti_dof_table: constant has not one entry per unknown', stat, errmsg)
+    else
+      call finish(feti_dof_table_i32(handle_of(p), size(number, kind=c_int64_t), number, address, term, coefficient, &
+        address_of(constant), 1_c_int32_t), stat, errmsg)
+    end if
+  end subroutine
+
+  !> int64.
+  recursive subroutine dof_table_int64(p, number, ptr, term, coefficient, constant, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(int64), intent(in), contiguous :: number(:), term(:)
+    integer(int64), intent(in), contiguous, target :: ptr(:)
+    real(real64), intent(in), contiguous :: coefficient(:)
+    real(real64), intent(in), contiguous, optional, target :: constant(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(c_ptr) :: address
+
+    address = c_null_ptr
+    if (size(ptr) > 0) address = c_loc(ptr)
+    if (all(size(ptr) /= [0, size(number) + 1])) then
+      call refuse(4, 'feti_dof_table: ptr has not one entry more than number', stat, errmsg)
+    else if (maxval(ptr) > min(size(term, kind=int64), size(coefficient, kind=int64)) + 1) then
+      call refuse(4, 'feti_dof_table: ptr points behind the end of term or coefficient', stat, errmsg)
+    else if (size_of(constant, size(number, kind=int64)) /= size(number, kind=int64)) then
+      call refuse(7, 'feti_dof_table: constant has not one entry per unknown', stat, errmsg)
+    else
+      call finish(feti_dof_table_i64(handle_of(p), size(number, kind=c_int64_t), number, address, term, coefficient, &
+        address_of(constant), 1_c_int32_t), stat, errmsg)
+    end if
   end subroutine
 
   !> Reads the connected part of every unknown of a body. component(n): part of each unknown, from 1.

@@ -138,6 +138,35 @@ module feti_contact_c
       integer(c_int64_t), intent(in) :: number(*)
       integer(c_int32_t), value :: base
     end function
+
+    !> Names the unknowns of the host that its matrices do not have, with 32-bit indices: supports, prescribed values,
+    !> multi-point constraints.
+    integer(c_int32_t) function feti_dof_table_i32(p, n, number, ptr, term, coefficient, constant, base) bind(C, &
+      name="feti_dof_table_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: n
+      integer(c_int32_t), intent(in) :: number(*)
+      type(c_ptr), value :: ptr
+      integer(c_int32_t), intent(in) :: term(*)
+      real(c_double), intent(in) :: coefficient(*)
+      type(c_ptr), value :: constant
+      integer(c_int32_t), value :: base
+    end function
+
+    !> As feti_dof_table_i32, with 64-bit indices.
+    integer(c_int32_t) function feti_dof_table_i64(p, n, number, ptr, term, coefficient, constant, base) bind(C, &
+      name="feti_dof_table_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: number(*)
+      type(c_ptr), value :: ptr
+      integer(c_int64_t), intent(in) :: term(*)
+      real(c_double), intent(in) :: coefficient(*)
+      type(c_ptr), value :: constant
+      integer(c_int32_t), value :: base
+    end function
   end interface
 
   ! ==== Null spaces ====

@@ -247,6 +247,19 @@ recursive subroutine ftbnum(ip, ibody, n, inum, ierr)
   ierr = told(feti_body_numbering(handle(ip), from_zero(ibody), wide(n), inum, 1_c_int32_t))
 end subroutine
 
+!> Names the unknowns of the host that its matrices do not have: supports, prescribed values, multi-point constraints.
+!> C: feti_dof_table.
+recursive subroutine ftdtab(ip, n, inum, iptr, iterm, coef, const, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, n, inum(*), iterm(*)
+  integer, intent(in), target :: iptr(*)
+  real(c_double), intent(in) :: coef(*)
+  real(c_double), intent(in), target :: const(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_dof_table(handle(ip), wide(n), inum, integers(iptr), iterm, coef, reals(const, .true.), 1_c_int32_t))
+end subroutine
+
 !> Reads the connected part of every unknown of a body. C: feti_body_components.
 recursive subroutine ftbcmp(ip, ibody, n, icomp, ierr)
   use feti_contact_f77_base

@@ -69,6 +69,8 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_info(0, null_mut());
         feti_body_numbering_i32(0, 0, null(), 0);
         feti_body_numbering_i64(0, 0, null(), 0);
+        feti_dof_table_i32(0, null(), null(), null(), null(), null(), 0);
+        feti_dof_table_i64(0, null(), null(), null(), null(), null(), 0);
         feti_body_null_space(0, 0, 0, null(), 0, 0);
         feti_body_no_null_space(0);
         feti_body_null_space_get(0, 0, null_mut(), null_mut(), 0);

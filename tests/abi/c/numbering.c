@@ -51,6 +51,36 @@ static void numbered(void)
     }
 }
 
+/* The host has the spring, both unknowns of the block, a driven one at .25, and the sum of block[0] and that, on which the row acts. */
+static void tabled(void)
+{
+    static const int32_t number[5] = { 4, 0, 2, -1, -1 }, ptr[6] = { 0, 0, 0, 0, 0, 2 }, term[2] = { 1, 3 }, dof[2] = { 0, 4 };
+    static const int64_t number_from_one[5] = { 5, 1, 3, 0, 0 }, ptr_from_one[6] = { 1, 1, 1, 1, 1, 3 }, term_from_one[2] = { 2, 4 };
+    static const int64_t circle[2] = { 2, 5 };
+    const double ones[2] = { 1.0, 1.0 }, constant[5] = { 0.0, 0.0, 0.0, 0.25, 0.0 }, gap = 0.75, none[2] = { 0.0, 0.0 };
+    const double f[5] = { 0.0, 2.0, -6.0, 9.0, -2.0 };
+    const double u[5] = { -3.0, -4.0, -5.5, 0.25, -3.75 }, r[5] = { -6.0, 0.0, 0.0, 0.0, 6.0 };
+
+    for (int base = 0; base <= 1; base++) {
+        feti_problem *p = small_problem();
+
+        give_numbers(p);
+        OK(feti_rows_clear(p, FETI_INEQUALITY));
+        if (base == 0) OK(feti_dof_table_i32(p, 5, number, ptr, term, ones, constant, 0));
+        else OK(feti_dof_table_i64(p, 5, number_from_one, ptr_from_one, term_from_one, ones, constant, 1));
+        OK(feti_rows_add_i32(p, FETI_INEQUALITY, 1, ROW_PTR, NULL, dof, ROW_VAL, 0, &gap, NULL));
+        OK(feti_body_load(p, BLOCK, 2, none));
+        OK(feti_body_load(p, FETI_ALL, 5, f));
+        check_whole(p, 5, u, r, "by the table");
+        EXPECT(FETI_ARGUMENT - 5, feti_dof_table_i64(p, 5, number_from_one, ptr_from_one, circle, ones, constant, 1));
+        check_last_error(p, &(expectation){ FETI_ARGUMENT - 5, ANY, ANY, ANY, 4, "feti_dof_table_i64", "in a circle" });
+        EXPECT(FETI_ARGUMENT - 4, feti_dof_table_i32(p, 5, number, term, term, ones, constant, 0));
+        EXPECT(FETI_ARGUMENT - 3, feti_body_load(p, FETI_ALL, 4, f));
+        check_whole(p, 5, u, r, "after tables that were refused");
+        OK(feti_problem_destroy(&p));
+    }
+}
+
 static void without_numbers(void)
 {
     const double f[3] = { 0.0, 0.0, -6.0 }, u[3] = { -3.0, -4.0, -5.5 }, r[3] = { -6.0, 6.0, 0.0 };
@@ -217,6 +247,7 @@ static void parts_and_facts(void)
 int main(void)
 {
     numbered();
+    tabled();
     without_numbers();
     glued();
     held_against_the_glue();

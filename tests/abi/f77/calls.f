@@ -14,6 +14,7 @@ C     Every subroutine of the face with status 0, its result compared.
       CALL FTFREE(IP, IERR)
       CALL OK(IERR, 'FTFREE')
       CALL HOLDS(IP .EQ. 0, 'FTFREE leaves IP')
+      CALL TABLE
       CALL PLACES
       CALL KEPT
       CALL ELEMS

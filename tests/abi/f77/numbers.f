@@ -55,3 +55,35 @@ C     the host: 5 4 of the chain, 3 2 of the bar, 1 of the point.
       CALL OK(IERR, 'FTBLOD')
       CALL SOLVES(IP, 10D0, -0.3D0, 'the load of the beginning')
       END
+
+C     The host has two unknowns, of which the second is .5 + 3 times the
+C     first, a spring 2. A load 4 on the second is 12 on the spring.
+      SUBROUTINE TABLE
+      INCLUDE 'feti_contact_f77.inc'
+      INTEGER IP, IB, IERR, IWORD(2), IPTR(2), ICOL(1), INUM(2), IT(3)
+      INTEGER ITERM(1), INFO(1)
+      DOUBLE PRECISION DWORD(2), RINFO(1), V(1), COEF(1)
+      DOUBLE PRECISION CONST(2), F(2), U(2)
+      DATA IWORD / 1, 2 /, DWORD / 1D0, 2D0 /
+      DATA IPTR / 1, 2 /, ICOL / 1 /, INUM / 1, 0 /, IT / 1, 1, 2 /
+      DATA ITERM / 1 /, V / 2D0 /, COEF / 3D0 /, CONST / 0D0, 5D-1 /
+      DATA F / 0D0, 4D0 /
+      CALL FTNEW(IWORD, DWORD, IP, IERR)
+      CALL OK(IERR, 'FTNEW')
+      CALL FTBADD(IP, 1, IB, IERR)
+      CALL OK(IERR, 'FTBADD')
+      CALL FTBSTF(IP, IB, 1, IPTR, ICOL, V, FTLOWR, IERR)
+      CALL OK(IERR, 'FTBSTF')
+      CALL FTDTAB(IP, 2, INUM, IT, ITERM, COEF, CONST, IERR)
+      CALL OK(IERR, 'FTDTAB')
+      CALL FTBLOD(IP, FTALL, 2, F, IERR)
+      CALL OK(IERR, 'FTBLOD')
+      CALL FTSOLV(IP, 0, INFO, 0, RINFO, IERR)
+      CALL OK(IERR, 'FTSOLV')
+      CALL FTDISP(IP, FTALL, 2, U, IERR)
+      CALL OK(IERR, 'FTDISP')
+      CALL SAME(U(1), 6D0, 'the spring')
+      CALL SAME(U(2), 18.5D0, 'the unknown of the table')
+      CALL FTFREE(IP, IERR)
+      CALL OK(IERR, 'FTFREE')
+      END

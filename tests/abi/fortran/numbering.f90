@@ -13,6 +13,7 @@ program numbering
   real(dp), parameter :: forces(6) = [6.0_dp, 7.0_dp, 0.0_dp, 7.0_dp, -6.0_dp, 7.0_dp]
 
   call numbered
+  call tabled
   call without_numbers
   call refused
   call parts_and_facts
@@ -42,6 +43,33 @@ contains
     call feti_reaction(p, 0, r)
     call require(all(abs(u - by_hand) <= 1e-9_dp), 'numbered: wrong displacements')
     call require(all(abs(r - forces) <= 1e-9_dp), 'numbered: wrong reactions')
+    call feti_problem_destroy(p)
+  end subroutine
+
+  !> The spring, both unknowns of the block, a driven one at .25, and the sum of the block's first and that, on which the row acts.
+  subroutine tabled
+    type(feti_problem) :: p
+    real(dp) :: u(5), r(5)
+    integer :: stat
+    character(len=200) :: text
+
+    call begin(p)
+    call feti_dof_table(p, [1, 2, 3, 0, 0], [1, 1, 1, 1, 1, 3], [2, 4], [1.0_dp, 1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp, 0.5_dp, 0.0_dp])
+    call feti_body_load(p, [0.0_dp, 2.0_dp, -6.0_dp, 9.0_dp, -2.0_dp])
+    call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [1, 5], [1.0_dp, -1.0_dp], [0.75_dp])
+    call feti_dof_table(p, int([1, 2, 3, 0, 0], int64), int([1, 1, 1, 1, 1, 3], int64), int([2, 4], int64), [1.0_dp, 1.0_dp], &
+      [0.0_dp, 0.0_dp, 0.0_dp, 0.25_dp, 0.0_dp])
+    call feti_dof_table(p, [1, 2, 3, 0, 0], [1, 1, 1, 1, 3], [2, 4], [1.0_dp, 1.0_dp], stat=stat, errmsg=text)
+    call require(stat == FETI_ARGUMENT - 4, 'pointers for four unknowns')
+    call feti_dof_table(p, [1, 2, 3, 0, 0], [1, 1, 1, 1, 1, 4], [2, 4], [1.0_dp, 1.0_dp], stat=stat)
+    call require(stat == FETI_ARGUMENT - 4, 'pointers behind the terms')
+    call feti_dof_table(p, [1, 2, 3, 0, 0], [1, 1, 1, 1, 1, 3], [2, 4], [1.0_dp, 1.0_dp], [0.0_dp], stat)
+    call require(stat == FETI_ARGUMENT - 7, 'one constant')
+    call feti_solve(p)
+    call feti_displacement(p, u)
+    call feti_reaction(p, 0, r)
+    call require(all(abs(u - [-3.0_dp, -4.0_dp, -5.5_dp, 0.25_dp, -3.75_dp]) <= 1e-9_dp), 'by the table: wrong displacements')
+    call require(all(abs(r - [-6.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 6.0_dp]) <= 1e-9_dp), 'by the table: wrong reactions')
     call feti_problem_destroy(p)
   end subroutine
 

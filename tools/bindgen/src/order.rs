@@ -28,6 +28,7 @@ pub const SECTIONS: [Section; 21] = [
         FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_COPY, FETI_BORROW, FETI_ALL,
         feti_body_add, feti_body_stiffness_i32, feti_body_stiffness_i64, feti_body_stiffness_split_i32, feti_body_stiffness_split_i64,
         feti_body_stiffness_dense, feti_body_load, feti_body_numbering_i32, feti_body_numbering_i64,
+        feti_dof_table_i32, feti_dof_table_i64,
     ]),
     section!("Null spaces", "Give the motions that a matrix does not resist; otherwise the library finds them.", [
         FETI_EXACT, FETI_CANDIDATES, FETI_SOFT,
