@@ -15,7 +15,8 @@
 #                SWEEPS="rows cut" picks some, a number among them leaves out decks of more unknowns
 # make growth    how time grows with the number of loose or glued bodies (some minutes); DECKS="tower wall" picks some
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
-# make mpi       several ranks under Open MPI and MPICH; make mpi-short: under Open MPI alone (a minute)
+# make mpi       several ranks under Open MPI and MPICH, DEALS=24 seeds of problems are dealt out; make mpi-short: under Open MPI
+#                alone, without them (a minute)
 # make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html, which Chromium
 #                opens page by page without network (some minutes)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
@@ -194,9 +195,9 @@ mpi: stage
 	@tools/setup.sh libopenmpi-dev openmpi-bin libmpich-dev mpich
 	$(CARGO) build --release --locked --package feti-contact-c --features loopback --target-dir build/mpi/target
 	RELEASE=build/mpi/target/release PREFIX=$(CURDIR)/build/mpi/lending DESTDIR= tools/install.sh install > /dev/null
-	mkdir -p build/mpi/problems
-	PROBLEMS=$(CURDIR)/build/mpi/problems BATTERY=$${BATTERY:-100} \
-		$(CARGO) test --release --locked --test batteries --quiet -- problems_as_files --ignored
+	rm -rf build/mpi/problems && mkdir -p build/mpi/problems
+	PROBLEMS=$(CURDIR)/build/mpi/problems BATTERY=$${BATTERY:-100} DEALS=$${DEALS:-24} \
+		$(CARGO) test --release --locked --test batteries --quiet -- problems_as_files problems_to_deal_out --ignored
 	LENDING=$(CURDIR)/build/mpi/lending PROBLEMS=$(CURDIR)/build/mpi/problems \
 		sh tests/mpi/run.sh $(STAGE) $(CURDIR) build/mpi openmpi mpich
 

@@ -3,7 +3,7 @@
 use decks::rubbing::{self, Rubbing};
 use decks::{masonry, Body, Csr, Cube, Deck, Moduli, Rows, Stack};
 
-use super::{compare, exact, unsaid};
+use super::{compare, Motions};
 use crate::reference::{Case, Sparse, CASES};
 
 fn csr(of: &Sparse, cols: usize) -> Csr {
@@ -64,8 +64,8 @@ fn reference(name: &str) -> Deck {
 fn reference_cases_dealt_out_to_ranks_have_the_bits_of_one_rank() {
     for (k, name) in CASES.iter().enumerate() {
         let deck = reference(name);
-        compare(name, k as u64, &deck, (exact, ""));
-        compare(name, 5 + k as u64, &deck, (unsaid, ""));
+        compare(name, k as u64, &deck, (Motions::Exact, ""));
+        compare(name, 5 + k as u64, &deck, (Motions::Unsaid, ""));
     }
 }
 
@@ -90,6 +90,6 @@ fn decks_dealt_out_to_ranks_have_the_bits_of_one_rank() {
     let decks = decks.into_iter().chain(rubbing.iter().step_by(9).map(Rubbing::build));
     for (k, deck) in decks.enumerate() {
         let name = deck.name.clone();
-        compare(&name, k as u64, &deck, (exact, ""));
+        compare(&name, k as u64, &deck, (Motions::Exact, ""));
     }
 }

@@ -2,6 +2,7 @@
 //! the order of its numbers.
 
 mod cases;
+mod files;
 mod glued;
 
 use std::path::Path;
@@ -18,8 +19,14 @@ use crate::support::linked::on_ranks;
 use crate::support::{asked, hand_over};
 use crate::{coulomb, soft};
 
-/// What a host says of the null space of a body.
-type Motions = fn(&mut Problem, usize, &decks::Body);
+/// What a host says of the null space of a body: all of it, motions that are nearly in it, where its nodes lie, or nothing.
+#[derive(Clone, Copy)]
+enum Motions {
+    Exact,
+    Soft,
+    Placed,
+    Unsaid,
+}
 
 /// That, and its options.
 type Said = (Motions, &'static str);
@@ -102,7 +109,7 @@ fn give(problem: &mut Problem, deck: &Deck, hand: &Hand, (motions, options): Sai
     for &p in &hand.bodies {
         let body = problem.add_body(deck.bodies[p].dofs()).unwrap();
         hand_over::set_body(problem, body, &deck.bodies[p]).unwrap();
-        motions(problem, body, &deck.bodies[p]);
+        say(problem, body, &deck.bodies[p], motions);
         let numbers: Vec<i64> = (firsts[p]..firsts[p + 1]).map(|number| number as i64).collect();
         problem.set_numbering(body, &numbers).unwrap();
     }
@@ -384,16 +391,16 @@ fn dealt(deck: &Deck, size: usize, random: &mut Random) -> Vec<Hand> {
     hands
 }
 
+fn is_same(rows: &Rows, i: usize, j: usize) -> bool {
+    let same = |of: &[f64]| of[i] == of[j];
+    rows.matrix.row(i).eq(rows.matrix.row(j)) && same(&rows.rhs) && same(&rows.compliance)
+}
+
 /// Of rows that are given twice any may have the force.
 fn without_order_of_equal_rows(deck: &Deck, bits: &mut Bits) {
     for (kind, rows) in [&deck.contact, &deck.equalities].into_iter().enumerate() {
-        let same = |i: usize, j: usize| {
-            rows.matrix.row(i).eq(rows.matrix.row(j))
-                && rows.rhs[i] == rows.rhs[j]
-                && rows.compliance[i] == rows.compliance[j]
-        };
         for i in 0..rows.rhs.len() {
-            for j in (0..i).filter(|j| same(i, *j)) {
+            for j in (0..i).filter(|j| is_same(rows, i, *j)) {
                 let of = |bits: &Bits, i: usize| {
                     let state = (kind == 0).then(|| bits.states[i].clone());
                     (bits.forces[kind][i].clone(), state, bits.weights[kind][i].clone())
@@ -462,45 +469,55 @@ fn is_read(name: &str, seed: u64, file: &[u8], deck: &Deck, all: &Bits) {
     }
 }
 
-fn exact(problem: &mut Problem, body: usize, of: &decks::Body) {
-    let modes = of.modes();
-    problem.set_null_space(body, of.dofs(), modes.len(), &modes.concat(), of.dofs(), Modes::Exact).unwrap();
+fn say(problem: &mut Problem, body: usize, of: &decks::Body, motions: Motions) {
+    let (n, modes) = (of.dofs(), of.modes());
+    match motions {
+        Motions::Exact => problem.set_null_space(body, n, modes.len(), &modes.concat(), n, Modes::Exact),
+        Motions::Soft => problem.set_null_space(body, n, modes.len(), &modes.concat(), n, Modes::Soft),
+        Motions::Placed => {
+            let places = of.coordinates.concat();
+            problem.set_coordinates(body, dimension(of), &of.node, &of.direction, &places, 3)
+        }
+        Motions::Unsaid => Ok(()),
+    }
+    .unwrap();
 }
 
-fn softly(problem: &mut Problem, body: usize, of: &decks::Body) {
-    let modes = of.modes();
-    problem.set_null_space(body, of.dofs(), modes.len(), &modes.concat(), of.dofs(), Modes::Soft).unwrap();
-}
-
-fn unsaid(_: &mut Problem, _: usize, _: &decks::Body) {}
-
-fn placed(problem: &mut Problem, body: usize, of: &decks::Body) {
-    let dimension = of.direction.iter().fold(1, |most, &axis| most.max(axis)) as usize;
-    problem.set_coordinates(body, dimension, &of.node, &of.direction, &of.coordinates.concat(), 3).unwrap();
+fn dimension(of: &decks::Body) -> usize {
+    of.direction.iter().fold(1, |most, &axis| most.max(axis)) as usize
 }
 
 /// Number of problems of each kind in the ordinary run.
 const PROBLEMS: u64 = 100;
 
+/// The problems of a seed, each with the name of its kind.
+fn drawn(seed: u64) -> Vec<(&'static str, Deck, Said)> {
+    let case = hard::case(seed);
+    let motions = match case.given {
+        hard::Given::NullSpaces => Motions::Exact,
+        hard::Given::Coordinates => Motions::Placed,
+        hard::Given::Nothing => Motions::Unsaid,
+    };
+    let mut all = vec![
+        ("varied", varied::case(seed).deck, (Motions::Exact, "")),
+        ("known outcome", battery::case(seed).deck, (Motions::Exact, "")),
+        ("hard", case.deck, (motions, "")),
+        ("driven", soft::random::driven(seed), (Motions::Soft, "")),
+    ];
+    if seed % 10 == 3 {
+        all.push(("by the paper", battery::case(seed).deck, (Motions::Exact, "method=paper-monotone")));
+    }
+    if seed % 4 == 0 {
+        let deck = coulomb::drawn::case(seed, &coulomb::drawn::SIZES).deck;
+        all.push(("friction", deck, (Motions::Exact, "")));
+    }
+    all
+}
+
 #[test]
 fn problems_dealt_out_to_ranks_have_the_bits_of_one_rank() {
     for seed in asked::seeds(PROBLEMS) {
-        compare("varied", seed, &varied::case(seed).deck, (exact, ""));
-        compare("known outcome", seed, &battery::case(seed).deck, (exact, ""));
-        let case = hard::case(seed);
-        let motions = match case.given {
-            hard::Given::NullSpaces => exact,
-            hard::Given::Coordinates => placed,
-            _ => unsaid as Motions,
-        };
-        compare("hard", seed, &case.deck, (motions, ""));
-        if seed % 10 == 3 {
-            compare("by the paper", seed, &battery::case(seed).deck, (exact, "method=paper-monotone"));
-        }
-        if seed % 4 == 0 {
-            compare("friction", seed, &coulomb::drawn::case(seed, &coulomb::drawn::SIZES).deck, (exact, ""));
-        }
-        compare("driven", seed, &soft::random::driven(seed), (softly, ""));
+        drawn(seed).iter().for_each(|(name, deck, said)| compare(name, seed, deck, *said));
     }
 }
 
@@ -510,5 +527,5 @@ fn equal_contact_rows_with_unequal_friction_come_in_one_order() {
     let deck = coulomb::drawn::case(176, &coulomb::drawn::SIZES).deck;
     let row = |i: usize| deck.contact.matrix.row(i);
     assert!(row(1).eq(row(2)) && deck.contact.rhs[1] == deck.contact.rhs[2]);
-    (176..184).for_each(|seed| compare("equal rows", seed, &deck, (exact, "")));
+    (176..184).for_each(|seed| compare("equal rows", seed, &deck, (Motions::Exact, "")));
 }

@@ -1,13 +1,15 @@
 #!/bin/sh
 # run.sh PREFIX ROOT WORK MPI...: with each MPI (openmpi, mpich, as Debian names their compilers) the installed sources for MPI are
 # compiled without a warning, as they are and with messages cut at 4096 bytes; examples 15 to 17 in C and Fortran, FORTRAN 77 hosts and
-# hostile hosts print on 2 and 4 ranks what they print on 1. The shared library needs no MPI. With LENDING, the prefix of a library that lends every
-# body, and PROBLEMS, a folder of problem files: also what it makes of these, bit by bit.
+# hostile hosts print on 2 and 4 ranks what they print on 1. The shared library needs no MPI. With PROBLEMS, a folder of problems, also what comes
+# of these, bit by bit: of those that are dealt out over the ranks (*.deal), and with LENDING, the prefix of a library that lends every body, of
+# problem files (*.feti).
 set -eu
 prefix=$1 root=$2 work=$3
 shift 3
 [ $# -gt 0 ] || { echo "usage: run.sh PREFIX ROOT WORK MPI..." >&2; exit 2; }
 limit=60 # seconds of a run
+counts="1 2 4"
 fail() { echo "tests/mpi: $*" >&2; exit 1; }
 
 ! readelf -dW "$prefix/lib/libfeti_contact.so" | grep -i 'NEEDED.*mpi' || fail "the library needs an MPI"
@@ -32,19 +34,19 @@ run() {
     esac
 }
 
-# same MPI PROGRAM ARGUMENT...: it ends well and prints the same bytes on 1, 2 and 4 ranks, and something at that; times are left out.
+# same MPI PROGRAM ARGUMENT...: it ends well and prints the same bytes on 1, 2 and 4 ranks (counts), and something at that; times are left out.
 same() {
     mpi=$1
     shift
-    for ranks in 1 2 4; do
+    for ranks in $counts; do
         run "$mpi" "$ranks" "$@" >printed 2>errors || { cat printed errors; fail "$mpi, $ranks ranks: $* ends with an error"; }
         sed 's/ seconds [0-9.]*//' printed >"ranks$ranks"
     done
     [ -s ranks1 ] || fail "$mpi: $* prints nothing"
-    for ranks in 2 4; do
+    for ranks in $counts; do
         diff ranks1 "ranks$ranks" || fail "$mpi: $* prints something else on $ranks ranks"
     done
-    echo "$mpi: $(basename "$1") $(basename "${2-}") prints the same on 1, 2 and 4 ranks"
+    echo "$mpi: $(basename "$1") $(basename "${2-}") prints the same on these numbers of ranks: $counts"
 }
 
 # built MPI FLAG...: the programs in this folder, the sources for MPI compiled with these flags.
@@ -58,6 +60,7 @@ built() {
         $cc -std=c99 $strict $(pkg --cflags) -I"$folder" -I"$c" "$c/$example.c" "$c/demo.c" shim.o -o "${example}_c" $link
     done
     $cc -std=c99 $strict "$@" $(pkg --cflags) -I"$folder" "$root/tests/mpi/hostile.c" -o hostile $link -lpthread
+    $cc -std=c99 -pedantic $strict $(pkg --cflags) -I"$folder" "$root/tests/mpi/deals.c" shim.o -o deals $link
     [ -z "${LENDING-}" ] || $cc -std=c99 $strict $(pkg --cflags) -I"$folder" "$root/tests/mpi/files.c" shim.o -o files -L"$LENDING/lib" \
         -Wl,-rpath,"$LENDING/lib" -lfeti_contact -lm
     $fc -O2 -Wall -J. -c $(pkg --variable=fortransources) $(pkg --variable=mpi_f08_sources) "$fortran/demo.f90"
@@ -128,6 +131,7 @@ for mpi in "$@"; do
         run "$mpi" 2 ./hostile leaves >printed 2>errors || ended=$?
         [ "$ended" -ne 0 ] && [ "$ended" -ne 124 ] || fail "$mpi: MPI_Abort does not end ranks that wait ($ended)"
         [ -z "${LENDING-}" ] || limit=600 same "$mpi" ./files "$PROBLEMS"/*.feti
+        [ -z "${PROBLEMS-}" ] || counts="1 2 3 4" limit=600 same "$mpi" ./deals "$PROBLEMS"/*.deal
         by_cmake "$mpi" "$([ "$mpi" = mpich ] && echo libmpich || echo libmpi)"
         by_fpm "$mpi"
     done
