@@ -80,14 +80,13 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
         }
         let _room = problem.checked_together(Call::Solve, Problem::working_headroom)?;
         let solved = problem.solve();
+        sizes = problem.sizes_of_all();
         // if one group of bodies has no answer, others may have one
         found = problem.report().cloned();
         ranks = Some((count_of(p), problem.traffic(), problem.seconds_leading()));
         solved.map(|report| of_outcome(&report.outcome))
     });
     if let Ok(Some(target)) = target {
-        // those of all ranks, once these have solved together
-        let sizes = found.as_ref().map_or(sizes, |report| report.sizes);
         target.write(&info_of(status, sizes, found.as_ref(), ranks));
     }
     status

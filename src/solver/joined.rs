@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::decomposition::{Connected, Decomposition};
 use crate::gathering::{Order, Revised, Told};
-use crate::model::{BodyRevisions, Revisions};
+use crate::model::{BodyRevisions, Revisions, Sizes};
 use crate::serving::Rank;
 use crate::solve::Answer;
 
@@ -17,6 +17,8 @@ pub struct Joined {
     pub role: Role,
     /// The model of this rank to which its answer belongs.
     pub answered: Option<Revisions>,
+    /// Of the problem of all ranks, after a call that has put it together.
+    pub sizes: Option<Sizes>,
 }
 
 pub enum Role {

@@ -364,11 +364,13 @@ fn whole(deck: &Deck) -> Hand {
 /// Dealt out at random to so many ranks, of which some may get nothing.
 fn dealt(deck: &Deck, size: usize, random: &mut Random) -> Vec<Hand> {
     let mut hands = vec![Hand::default(); size];
-    let players = 1 + random.below(size);
+    let (first, players) = (random.below(size), 1 + random.below(size));
     let shuffled = |count: usize, random: &mut Random| {
         let mut all: Vec<(u64, usize)> = (0..count).map(|k| (random.bits(), k)).collect();
         all.sort_unstable();
-        all.into_iter().map(|(bits, k)| (size - 1 - (bits / 7) as usize % players, k)).collect::<Vec<_>>()
+        all.into_iter()
+            .map(|(bits, k)| ((first + (bits / 7) as usize % players) % size, k))
+            .collect::<Vec<_>>()
     };
     shuffled(deck.bodies.len(), random).into_iter().for_each(|(rank, p)| hands[rank].bodies.push(p));
     let mut rank_of = vec![0; deck.contact.rhs.len()];
@@ -384,9 +386,9 @@ fn dealt(deck: &Deck, size: usize, random: &mut Random) -> Vec<Hand> {
         let rank = deck.friction.normal[k].map_or(rank, |row| rank_of[row]);
         hands[rank].nodes.push(k);
     }
-    // if all others serve, rank 0 takes its own order
-    for hand in hands.iter_mut().skip(2) {
-        hand.serves = hand.bodies.is_empty() && hand.rows.iter().all(Vec::is_empty) && random.chance(0.5);
+    for hand in hands.iter_mut().skip(1) {
+        let is_empty = hand.bodies.is_empty() && hand.nodes.is_empty() && hand.rows.iter().all(Vec::is_empty);
+        hand.serves = is_empty && random.chance(0.5);
     }
     hands
 }

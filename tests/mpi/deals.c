@@ -210,8 +210,8 @@ static void take(feti_problem *p, const deck *d, const pile *own, answer *a)
     a->status = feti_solve(p, &info), a->steps = info.steps, a->told = BASIS, TOLD(a->status);
     PART(info.floating_modes, info.factorisations), PART(info.worst, info.seconds_setup), PART(info.direct_solves, info.columns_computed);
     PART(info.friction_cone, info.nodes), PART(info.sticking, info.ranks);
-    if (a->status >= 0) PART(info.bodies, info.floating_modes), TOLD(info.nodes); /* otherwise they may be those of this rank */
-    else SURE(feti_last_error_detail(&detail)), TOLD(detail.value), TOLD(detail.limit);
+    PART(info.bodies, info.floating_modes), TOLD(info.nodes);
+    if (a->status < 0) SURE(feti_last_error_detail(&detail)), TOLD(detail.value), TOLD(detail.limit);
     for (int kind = 0; kind < KINDS; kind++) {
         const int64_t width = kind == FETI_TANGENTIAL ? dim : 1, *const item = own[kind].item;
         const int is_row = kind == FETI_INEQUALITY || kind == FETI_EQUALITY;

@@ -36,10 +36,8 @@ impl Leading<'_> {
     /// Leads the call; the other ranks hear of its end whatever happens. None if no other rank has a part: the problem of rank 0 is that
     /// of all.
     pub fn lead(&mut self, problem: u64, called: Called, brought: Brought) -> Result<Option<Finish>> {
-        if self.ranks.is_closed() && self.leader.told.is_none() {
-            return Ok(None);
-        }
-        let (begun, refusal) = self.begin(problem, called)?;
+        let is_left_alone = self.ranks.is_closed() && !self.leader.paired.contains(&true);
+        let (begun, refusal) = if is_left_alone { (Vec::new(), None) } else { self.begin(problem, called)? };
         self.members = begun.iter().map(|(rank, _)| *rank).collect();
         if begun.is_empty() && refusal.is_none() && !self.puts_in_order(called.call) {
             return Ok(None);
@@ -60,6 +58,8 @@ impl Leading<'_> {
                 .collect()
         };
         let mut ends: Vec<Finish> = ended.unwrap_or_else(failed);
+        let sizes = self.leader.told.as_ref().map(|_| self.all.model.sizes());
+        ends.iter_mut().for_each(|end| end.sizes = sizes);
         let own = ends.remove(0);
         let mut ends = ends.into_iter();
         self.ask(FINISH, |_| Finish { leads, ..ends.next().unwrap_or_default() })?;
@@ -67,12 +67,12 @@ impl Leading<'_> {
         Ok(Some(own))
     }
 
-    /// One rank alone, which other ranks might have shared the problem with, solves it in the order that it has on several. If a body is
-    /// cut, which it is not on several ranks, the order remains that of the host.
+    /// A problem of rank 0 alone, which other ranks might have shared, is solved in the order that it has on several. If a body is cut, which
+    /// it is not on several ranks, the order remains that of the host.
     fn puts_in_order(&mut self, call: Call) -> bool {
         let model = &self.own.model;
         let is_cut = model.bodies.iter().any(|given| given.body.assembled().is_some());
-        let orders = self.ranks.size == 1 && call != Call::Read && is_numbered(model) && !is_cut;
+        let orders = call != Call::Read && is_numbered(model) && !is_cut;
         self.leader.told.take_if(|_| !orders);
         orders
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::body::{wire_struct, Facts};
 use crate::certificate::Certificate;
 use crate::gathering::{Copies, Revised, Told, Values};
+use crate::model::Sizes;
 use crate::solver::call::Call;
 use crate::solver::joined::BodyMade;
 use crate::solver::together::failure::Failure;
@@ -103,6 +104,8 @@ pub struct Finish {
     pub rows: Vec<usize>,
     /// An answer that was saved is that of the present data.
     pub fits: bool,
+    /// Of the problem of all ranks, once it is put together.
+    pub sizes: Option<Sizes>,
 }
 
 wire_struct!(Called { call, number });
@@ -115,4 +118,4 @@ wire_struct!(PartsTold { parts, loose });
 wire_struct!(PartTold { order, dofs, facts });
 wire_struct!(Facts { entries, largest, length, last_digit, keys });
 wire_struct!(BodyMade { kplus, operator });
-wire_struct!(Finish { leads, failure, share, made, certificate, motion, rows, fits });
+wire_struct!(Finish { leads, failure, share, made, certificate, motion, rows, fits, sizes });

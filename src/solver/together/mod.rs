@@ -18,7 +18,7 @@ use std::sync::Arc;
 use crate::body::Lending;
 use crate::certificate::Certificate;
 use crate::error::{Error, Kind, Result};
-use crate::model::HostModel;
+use crate::model::{HostModel, Sizes};
 use crate::ranks::Ranks;
 use crate::serving::Rank;
 use crate::solve::Report;
@@ -57,7 +57,7 @@ impl Problem {
             all
         });
         rank.set_problem(problem, None);
-        self.joined = Some(Box::new(Joined { rank, problem, role, answered: None }));
+        self.joined = Some(Box::new(Joined { rank, problem, role, answered: None, sizes: None }));
         Ok(())
     }
 
@@ -65,6 +65,12 @@ impl Problem {
     pub(super) fn is_answered_together(&self) -> bool {
         let answered = self.joined.as_ref().and_then(|joined| joined.answered);
         answered == Some(self.model.revisions)
+    }
+
+    /// Numbers of bodies, unknowns and rows of all ranks after a call of all; before it, and without others, those of this rank.
+    #[doc(hidden)]
+    pub fn sizes_of_all(&self) -> Sizes {
+        self.joined.as_ref().and_then(|joined| joined.sizes).unwrap_or_else(|| self.sizes())
     }
 
     /// The problem is solved in the order of several ranks.
@@ -88,9 +94,12 @@ impl Problem {
         }
     }
 
-    /// There are no other ranks.
+    /// No other rank has a part of the problem.
     pub(super) fn is_only_rank(&self) -> bool {
-        self.joined.as_ref().is_none_or(|joined| joined.rank.ranks.size == 1)
+        self.joined.as_ref().is_none_or(|joined| match &joined.role {
+            Role::Leads(leader) => !leader.paired.contains(&true),
+            Role::Follows(_) => false,
+        })
     }
 
     /// Checks what the host gives in a call that all ranks make: if it is refused, the others hear of it.
@@ -147,6 +156,7 @@ impl Problem {
     fn together(&mut self, call: Call, number: u64, brought: Brought) -> Result<Option<Finish>> {
         let Some(mut joined) = self.joined.take() else { return Ok(None) };
         let called = Called { call, number };
+        joined.sizes = None;
         let ended = self.with_all(&mut joined, called, brought);
         let taken = ended.and_then(|end| end.map(|end| self.take_end(end, called, &mut joined)).transpose());
         if call == Call::Solve && matches!(taken, Ok(None)) {
@@ -177,6 +187,7 @@ impl Problem {
 
     /// Takes what belongs to this rank.
     fn take_end(&mut self, mut end: Finish, called: Called, joined: &mut Joined) -> Result<Finish> {
+        joined.sizes = end.sizes;
         // a call that ends before the solve leaves the last answer
         if let Some(share) = end.share.take() {
             if called.call == Call::Solve {

@@ -146,6 +146,19 @@ fn a_load_that_nothing_holds() {
 }
 
 #[test]
+fn the_sizes_of_all_ranks_are_known_after_a_failure_too() {
+    let sizes = on_ranks(RANKS, |rank, problem| {
+        give(problem, rank);
+        let alone = problem.sizes_of_all();
+        [0.0, 1.0].iter().for_each(|at| row(problem, RowKind::Equality, &[2], &[1.0], *at));
+        (alone.bodies, solved(problem).is_err(), problem.sizes_of_all())
+    });
+    for (alone, fails, all) in sizes {
+        assert_eq!((alone, fails, all.bodies, all.equalities), (1, true, RANKS, 2 * RANKS));
+    }
+}
+
+#[test]
 fn an_equality_row_that_contradicts_another_of_its_rank() {
     let errors = told(|problem, wrong| {
         if wrong {
