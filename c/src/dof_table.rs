@@ -43,6 +43,7 @@ twins! {
             // SAFETY: n + 1 positions guaranteed by the caller.
             let ptr = given.map(|ptr| unsafe { term_pointers(ptr, n, base) }).transpose()?;
             let terms = ptr.as_ref().and_then(|ptr| ptr.last().copied()).unwrap_or(0);
+            let _room = problem.headroom_for_rows(n, terms)?;
             // SAFETY: the last position is the number of terms.
             let (term, coefficient) =
                 unsafe { (numbers(term, terms, base, "term")?, input(coefficient, terms, "coefficient")?) };

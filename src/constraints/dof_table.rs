@@ -62,15 +62,12 @@ impl DofTable {
         }
         let mut found: Vec<Vec<(usize, f64)>> = filled(n, Vec::new(), WHAT)?;
         let mut constants = filled(n, 0.0, WHAT)?;
-        for i in input.order(n)? {
-            if let Some(place) = places[i] {
-                found[i].push((place, 1.0));
-                continue;
-            }
+        for i in input.order(n)?.into_iter().filter(|i| places[*i].is_none()) {
             let mut constant = Twofold::from(input.constant(i));
             let mut entries = Vec::new();
             for (_, term, by) in input.terms(i) {
                 constant.add_product(by, constants[term]);
+                entries.extend(places[term].map(|place| (place, by)));
                 entries.extend(found[term].iter().map(|(place, v)| (*place, by * v)));
             }
             let noise = summed(&mut entries);
@@ -84,7 +81,9 @@ impl DofTable {
             found[i] = entries;
         }
         let mut terms = Csr::empty(0);
-        found.into_iter().for_each(|entries| terms.push_row(entries));
+        for (place, entries) in places.iter().zip(found) {
+            terms.push_row(place.map(|place| (place, 1.0)).into_iter().chain(entries));
+        }
         Ok(Self { terms, constants, places })
     }
 
@@ -92,8 +91,12 @@ impl DofTable {
         self.places.len()
     }
 
-    /// `rhs - b g` of a row with entries b over the unknowns of the host. A row that has no unknown of K holds up to its rounding.
+    /// `rhs - b g` of a row with entries b over the unknowns of the host. A row that has no unknown of K holds up to its rounding, and one that
+    /// never closes stays so.
     pub fn right_hand_side(&self, row: impl Iterator<Item = (usize, f64)>, rhs: f64) -> f64 {
+        if rhs.is_infinite() {
+            return rhs;
+        }
         let (mut left, mut terms, mut is_free) = (Twofold::from(rhs), rhs.abs(), true);
         for (i, b) in row {
             left.add_product(-b, self.constants[i]);

@@ -1,5 +1,7 @@
 //! Rows over the unknowns of the host's table `u = T v + g`: a row `b u <= c` is `(bT) v <= c - b g`.
 
+use std::sync::Arc;
+
 use crate::constraints::dof_table::DofTable;
 use crate::constraints::{RowKind, RowsInput};
 use crate::error::{Error, Result, INDEX};
@@ -9,7 +11,7 @@ use crate::linalg::Csr;
 /// The table, and the rows that name unknowns of it.
 #[derive(Debug, Clone)]
 pub struct Table {
-    pub dofs: DofTable,
+    pub dofs: Arc<DofTable>,
     rows: [TabledRows; 3],
 }
 
@@ -71,7 +73,7 @@ impl Table {
                 return Err(error.index(rows.matrix.col[at] as i64));
             }
         }
-        Ok(Self { dofs, rows })
+        Ok(Self { dofs: Arc::new(dofs), rows })
     }
 
     /// Rows whose entries name unknowns of the table.

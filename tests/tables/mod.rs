@@ -297,6 +297,25 @@ fn committed_slips_are_those_of_driven_unknowns() {
     assert!((u(&mut problem) - 0.05).abs() < 1e-12);
 }
 
+#[test]
+fn a_row_that_never_closes_is_turned_on_with_what_is_left_of_its_gap() {
+    let mut problem = Problem::new();
+    problem.add_body(1).unwrap();
+    let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[2.0], storage: Storage::Lower };
+    problem.set_stiffness(0, k).unwrap();
+    let constant = Some(&[0.0, 0.25][..]);
+    let table = DofTableInput { number: &[0, -1], ptr: None, term: &[], coefficient: &[], constant };
+    problem.set_dof_table(table).unwrap();
+    problem.set_all_loads(&[2.0, 0.0]).unwrap();
+    add(&mut problem, RowKind::Inequality, &[(0, 1.0), (1, -1.0)], f64::INFINITY).unwrap();
+    for (gap, u) in [(f64::INFINITY, 1.0), (0.5, 0.75), (f64::INFINITY, 1.0)] {
+        problem.set_rhs(RowKind::Inequality, 0, &[gap]).unwrap();
+        problem.set_dof_table(table).unwrap();
+        problem.solve().unwrap();
+        assert!((problem.displacements().unwrap()[0] - u).abs() < 1e-12, "{gap}");
+    }
+}
+
 /// c - b g is rounding of its terms.
 #[test]
 fn a_held_node_on_a_held_face_has_a_row_that_holds_up_to_rounding() {
