@@ -2136,8 +2136,7 @@ typedef struct feti_communicator {
  * library, in the floating-point environment of that thread. It calls feti_communicator.release once when
  * the problem is destroyed, if this call has returned FETI_OK. The functions must not exit by longjmp or
  * an exception, nor call the library for a problem whose table has the same `user`. With one rank it calls
- * none, and if bodies have numbers, they and the rows are taken in the order that they have on several
- * ranks.
+ * none. If bodies have numbers, they and the rows are taken in the order that they have on several ranks.
  *
  * FETI_STATE if the problem has a body or a table already.
  *
