@@ -190,7 +190,8 @@ int32_t feti_problem_destroy(feti_problem **p);
 #define FETI_BORROW 1
 /**
  * In place of a body number: all bodies. If they have numbers of the host (feti_body_numbering_i32 or
- * _i64), arrays use these numbers.
+ * _i64), arrays use these numbers; after feti_dof_table_i32 or _i64 arrays have an entry for each unknown
+ * of the table.
  */
 #define FETI_ALL -1
 
@@ -287,8 +288,8 @@ int32_t feti_body_stiffness_dense(feti_problem *p, int64_t body, int64_t n, cons
  * body. FETI_STATE with FETI_ALL if some bodies have numbers of the host and others have none.
  *
  * @param body number of the body, from 0, or FETI_ALL
- * @param n    unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers the
- *             unknowns of all bodies
+ * @param n    unknowns of the body; with FETI_ALL at least those of the table (feti_dof_table_i32), or the
+ *             largest number + 1, or without both the unknowns of all bodies
  * @param f    (n) force
  */
 int32_t feti_body_load(feti_problem *p, int64_t body, int64_t n, const double *f);
@@ -669,9 +670,10 @@ int32_t feti_body_operator(feti_problem *p, int64_t body, int64_t n, const doubl
  * @param      rows    number of rows, 0 adds none
  * @param      row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
  *                     `base`
- * @param      body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
- *                     host's number of the unknown (feti_body_numbering_i32) or, without such numbers,
- *                     counts the unknowns of all bodies consecutively
+ * @param      body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is an
+ *                     unknown of the table (feti_dof_table_i32) or, without a table, the host's number of
+ *                     the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns
+ *                     of all bodies consecutively
  * @param      dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param      val     (row_ptr[rows] - base) entries of B or H
  * @param      base    0 or 1: what `row_ptr`, `body` and `dof` count from
@@ -746,8 +748,9 @@ int32_t feti_counts(feti_problem *p, int64_t *bodies, int64_t *dofs, int64_t *ro
  * @param      row_ptr     (dim * nodes + 1) tangential row i (dim rows per node) holds the entries
  *                         `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
  * @param      body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`; NULL:
- *                         `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without
- *                         such numbers, counts the unknowns of all bodies consecutively
+ *                         `dof` is an unknown of the table (feti_dof_table_i32) or, without a table, the
+ *                         host's number of the unknown (feti_body_numbering_i32) or, without such numbers,
+ *                         counts the unknowns of all bodies consecutively
  * @param      dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
  * @param      val         (row_ptr[dim * nodes] - base) entries of T
  * @param      base        0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count from
@@ -1167,8 +1170,8 @@ int32_t feti_cancel(feti_problem *p);
  * numbers of the host and others have none.
  *
  * @param      body number of the body, from 0, or FETI_ALL
- * @param      n    unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers
- *                  the unknowns of all bodies
+ * @param      n    unknowns of the body; with FETI_ALL at least those of the table (feti_dof_table_i32),
+ *                  or the largest number + 1, or without both the unknowns of all bodies
  * @param[out] u    (n) displacement, length
  */
 int32_t feti_displacement(feti_problem *p, int64_t body, int64_t n, double *u);
@@ -1225,8 +1228,8 @@ int32_t feti_active(feti_problem *p, int64_t rows, int32_t *state);
  *
  * @param      kind FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
  * @param      body number of the body, from 0, or FETI_ALL
- * @param      n    unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers
- *                  the unknowns of all bodies
+ * @param      n    unknowns of the body; with FETI_ALL at least those of the table (feti_dof_table_i32),
+ *                  or the largest number + 1, or without both the unknowns of all bodies
  * @param[out] r    (n) force
  */
 int32_t feti_reaction(feti_problem *p, int32_t kind, int64_t body, int64_t n, double *r);

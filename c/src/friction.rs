@@ -33,7 +33,7 @@ twins! {
     /// | `dim` | in | scalar | tangential rows of a node, 1 or 2 |
     /// | `normal_row` | in | nodes | contact row of each node, counted from `base`; `base` - 1: no contact row, only the bound acts |
     /// | `row_ptr` | in | dim * nodes + 1 | tangential row i (dim rows per node) holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-    /// | `body` | in | `row_ptr[dim * nodes] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
+    /// | `body` | in | `row_ptr[dim * nodes] - base` | body of each entry, counted from `base`; NULL: `dof` is an unknown of the table (feti_dof_table_i32) or, without a table, the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
     /// | `dof` | in | `row_ptr[dim * nodes] - base` | unknown of each entry, counted from `base` |
     /// | `val` | in | `row_ptr[dim * nodes] - base` | entries of T |
     /// | `base` | in | scalar | 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count from |

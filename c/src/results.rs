@@ -24,7 +24,7 @@ use feti_contact::solver::{FrictionState, RowState};
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
-/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers the unknowns of all bodies |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least those of the table (feti_dof_table_i32), or the largest number + 1, or without both the unknowns of all bodies |
 /// | `u` | out | n | displacement, length |
 ///
 /// # Safety
@@ -62,7 +62,7 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
 /// | `p` | in | scalar | the handle |
 /// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all |
 /// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
-/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers the unknowns of all bodies |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least those of the table (feti_dof_table_i32), or the largest number + 1, or without both the unknowns of all bodies |
 /// | `r` | out | n | force |
 ///
 /// # Safety

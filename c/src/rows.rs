@@ -21,7 +21,7 @@ twins! {
     /// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
     /// | `rows` | in | scalar | number of rows, 0 adds none |
     /// | `row_ptr` | in | rows + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-    /// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
+    /// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is an unknown of the table (feti_dof_table_i32) or, without a table, the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
     /// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
     /// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
     /// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |

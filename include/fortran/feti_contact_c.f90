@@ -42,7 +42,7 @@ module feti_contact_c
   !> Stiffness flag: keep using the caller's arrays (values, and 32-bit 0-based columns) if the layout permits.
   integer(c_int32_t), parameter :: FETI_BORROW = 1_c_int32_t
   !> In place of a body number: all bodies. If they have numbers of the host (feti_body_numbering_i32 or _i64), arrays
-  !> use these numbers.
+  !> use these numbers; after feti_dof_table_i32 or _i64 arrays have an entry for each unknown of the table.
   integer(c_int64_t), parameter :: FETI_ALL = -1_c_int64_t
 
   interface

@@ -31,6 +31,10 @@ module feti_contact_f77_base
     procedure feti_body_numbering_i32, feti_body_numbering_i64
   end interface
   !> For index arrays of the host.
+  interface feti_dof_table
+    procedure feti_dof_table_i32, feti_dof_table_i64
+  end interface
+  !> For index arrays of the host.
   interface feti_rows_add
     procedure feti_rows_add_i32, feti_rows_add_i64
   end interface

@@ -23,7 +23,9 @@ soname=$(readelf -dW lib/libfeti_contact.so | sed -n 's/.*SONAME.*\[\(.*\)\]/\1/
 [ "$(readlink lib/libfeti_contact.so)" = "$soname" ] || { echo "libfeti_contact.so does not point to $soname"; exit 1; }
 [ -n "$(readlink "lib/$soname")" ] || { echo "$soname is no link"; exit 1; }
 version=$(PKG_CONFIG_PATH=lib/pkgconfig pkg-config --modversion feti_contact)
-grep -qx "version = \"$version\"" share/feti_contact/fortran/fpm.toml || { echo "fpm.toml is not of version $version"; exit 1; }
+for of in fortran mpi; do
+    grep -qx "version = \"$version\"" share/feti_contact/$of/fpm.toml || { echo "fpm.toml of $of is not of version $version"; exit 1; }
+done
 texts="lib/pkgconfig lib/cmake share/feti_contact"
 ! grep -rq '@[A-Z]*@' $texts || { echo "a template was not filled in"; exit 1; }
 ! grep -rqF -e "$stage" -e "$root" -e /opt/feti $texts || { echo "a file names the place of installation"; exit 1; }

@@ -123,7 +123,7 @@ pub extern "C" fn feti_body_coordinates_flags(p: *mut feti_problem, body: i64, f
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
-/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers the unknowns of all bodies |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least those of the table (feti_dof_table_i32), or the largest number + 1, or without both the unknowns of all bodies |
 /// | `f` | in | n | force |
 ///
 /// # Safety

@@ -8,7 +8,7 @@ pub const FETI_EQUALITY: i32 = 2;
 pub const FETI_TANGENTIAL: i32 = 3;
 
 /// In place of a body number: all bodies. If they have numbers of the host (feti_body_numbering_i32 or _i64), arrays use
-/// these numbers.
+/// these numbers; after feti_dof_table_i32 or _i64 arrays have an entry for each unknown of the table.
 pub const FETI_ALL: i64 = -1;
 
 /// Storage: every entry of the symmetric matrix is given.
