@@ -41,7 +41,6 @@ impl DofTable {
     /// `place`: where K has the unknown with a number, if it has it.
     pub fn resolve(input: DofTableInput<'_>, place: impl Fn(usize) -> Option<usize>) -> Result<Self> {
         let n = input.number.len();
-        input.check(n)?;
         let mut places: Vec<Option<usize>> = reserved(n, WHAT)?;
         let mut seen = HashMap::new();
         for (i, &number) in input.number.iter().enumerate() {
@@ -60,6 +59,7 @@ impl DofTable {
             })?;
             places.push(Some(known));
         }
+        input.check(n)?;
         let mut found: Vec<Vec<(usize, f64)>> = filled(n, Vec::new(), WHAT)?;
         let mut constants = filled(n, 0.0, WHAT)?;
         for i in input.order(n)?.into_iter().filter(|i| places[*i].is_none()) {

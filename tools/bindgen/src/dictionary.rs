@@ -149,7 +149,7 @@ const ENTRIES: &[Entry] = &[
     ("feti_dof_table.coefficient", Role::Doubles, "1.0"),
     ("feti_dof_table.constant", Role::Doubles, "0.0, 0.0, 1.0"),
     ("feti_dof_table.n", Role::Free, "3"),
-    ("feti_dof_table.number", Role::Rows, "2, 3, -1"),
+    ("feti_dof_table.number", Role::Unknowns, "2, 3, -1"),
     ("feti_dof_table.ptr", Role::Positions, "0, 0, 0, 1"),
     ("feti_dof_table.term", Role::Indices, "0"),
     ("feti_dual_apply.x", Role::Doubles, "1.0, 2.0, 3.0"),
