@@ -4,11 +4,12 @@ use std::ptr::{null, null_mut};
 
 use crate::*;
 
-pub const SOURCES: [&str; 23] = [
+pub const SOURCES: [&str; 24] = [
     include_str!("../bodies/body.rs"),
     include_str!("../bodies/body_info.rs"),
     include_str!("../bodies/elements.rs"),
     include_str!("../diagnosis.rs"),
+    include_str!("../dof_table.rs"),
     include_str!("../boundary/error_store.rs"),
     include_str!("../file.rs"),
     include_str!("../friction.rs"),
