@@ -13,12 +13,9 @@ pub const PER_ENTRY: usize = 128;
 
 impl HostModel {
     pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
-        let (given, resolved) = (rows, self.resolved(rows)?);
-        let rows = resolved.as_ref().map_or(rows, Resolved::input);
-        let places = match rows.body {
-            None if resolved.is_none() => self.places_of(rows.ptr, rows.dof)?,
-            _ => None,
-        };
+        let given = rows;
+        let (resolved, places) = self.named(given)?;
+        let rows = resolved.as_ref().map_or(given, Resolved::input);
         let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
         let (all, end, is_named) = ([0, usize::MAX], self.sizes().dofs, self.has_others && places.is_some());
         let offsets = std::mem::take(&mut self.offsets);
@@ -60,12 +57,9 @@ impl HostModel {
     }
 
     pub fn add_friction(&mut self, input: FrictionInput) -> Result<usize> {
-        let (given, resolved) = (input.rows, self.resolved(input.rows)?);
+        let given = input.rows;
+        let (resolved, places) = self.named(given)?;
         let rows = resolved.as_ref().map_or(given, Resolved::input);
-        let places = match rows.body {
-            None if resolved.is_none() => self.places_of(rows.ptr, rows.dof)?,
-            _ => None,
-        };
         let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
         let (all, end, is_named) = ([0, usize::MAX], self.sizes().dofs, self.has_others && places.is_some());
         let SolvedModel { friction, contact, offsets, .. } = &mut self.contents;

@@ -83,10 +83,13 @@ impl HostModel {
         }
     }
 
-    /// Rows over unknowns of the table, if there is one, over the unknowns of all bodies.
-    pub(super) fn resolved(&self, rows: RowsInput<'_>) -> Result<Option<Resolved>> {
-        let table = self.table.as_ref().filter(|_| rows.body.is_none());
-        table.map(|table| table.resolved(rows)).transpose()
+    /// Rows without bodies over the unknowns of all bodies: whole rows if there is a table, otherwise places if there are numbers.
+    pub(super) fn named(&self, rows: RowsInput<'_>) -> Result<(Option<Resolved>, Option<Vec<i64>>)> {
+        match (rows.body, &self.table) {
+            (Some(_), _) => Ok((None, None)),
+            (None, Some(table)) => Ok((Some(table.resolved(rows)?), None)),
+            (None, None) => Ok((None, self.places_of(rows.ptr, rows.dof)?)),
+        }
     }
 
     /// Right-hand sides of rows from `first` on, for the unknowns of all bodies.

@@ -181,6 +181,15 @@ fn reduced(model: &Model) -> Problem {
     problem
 }
 
+/// One unknown on a spring 2.
+fn spring() -> Problem {
+    let mut problem = Problem::new();
+    problem.add_body(1).unwrap();
+    let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[2.0], storage: Storage::Lower };
+    problem.set_stiffness(0, k).unwrap();
+    problem
+}
+
 const KINDS: [RowKind; 3] = RowKind::ALL;
 
 /// What both say is the same: displacements of all unknowns of the host, forces, states and reactions; true if there is an answer.
@@ -264,10 +273,7 @@ fn new_constants_and_other_coefficients_give_what_a_new_problem_gives() {
 /// A mass pushed past what friction holds, its foot driven by the host: the next step starts from where the foot has slipped to.
 #[test]
 fn committed_slips_are_those_of_driven_unknowns() {
-    let mut problem = Problem::new();
-    problem.add_body(1).unwrap();
-    let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[2.0], storage: Storage::Lower };
-    problem.set_stiffness(0, k).unwrap();
+    let mut problem = spring();
     // unknown 1 is driven by .5, and the node slips by u_0 - u_1
     let drive = |problem: &mut Problem, by: f64| {
         let constant = [0.0, by];
@@ -299,10 +305,7 @@ fn committed_slips_are_those_of_driven_unknowns() {
 
 #[test]
 fn a_row_that_never_closes_is_turned_on_with_what_is_left_of_its_gap() {
-    let mut problem = Problem::new();
-    problem.add_body(1).unwrap();
-    let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[2.0], storage: Storage::Lower };
-    problem.set_stiffness(0, k).unwrap();
+    let mut problem = spring();
     let constant = Some(&[0.0, 0.25][..]);
     let table = DofTableInput { number: &[0, -1], ptr: None, term: &[], coefficient: &[], constant };
     problem.set_dof_table(table).unwrap();
@@ -319,10 +322,7 @@ fn a_row_that_never_closes_is_turned_on_with_what_is_left_of_its_gap() {
 /// c - b g is rounding of its terms.
 #[test]
 fn a_held_node_on_a_held_face_has_a_row_that_holds_up_to_rounding() {
-    let mut problem = Problem::new();
-    problem.add_body(1).unwrap();
-    let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[2.0], storage: Storage::Lower };
-    problem.set_stiffness(0, k).unwrap();
+    let mut problem = spring();
     let constant = [0.0, 0.3, 0.1];
     let table = DofTableInput {
         number: &[0, -1, -1],
