@@ -59,6 +59,8 @@ pub struct Place {
     pub body: Option<usize>,
     pub component: Option<usize>,
     pub element: Option<usize>,
+    /// Face of a surface.
+    pub face: Option<usize>,
     pub dof: Option<usize>,
     /// Node with friction.
     pub node: Option<usize>,
@@ -94,6 +96,7 @@ impl fmt::Display for Place {
             ("body", self.body),
             ("component", self.component),
             ("element", self.element),
+            ("face", self.face),
             ("dof", self.dof),
             ("node", self.node),
             ("row", self.row),
@@ -153,6 +156,7 @@ impl Error {
         rank: usize,
         component: usize,
         element: usize,
+        face: usize,
         dof: usize,
         node: usize,
         row: usize,

@@ -350,6 +350,7 @@ wire_struct!(Place {
     body,
     component,
     element,
+    face,
     dof,
     node,
     row,
