@@ -62,6 +62,7 @@
 //! | `body` | one body: K_p, R_p, fixing dofs, K_p+ |
 //! | `constraints` | B u <= c, H u = h: rows, their compliance and scaling |
 //! | `dual` | F, d, G, e, and the recovery of u |
+//! | `surface` | faces of meshes: rows between nodes and faces |
 //! | `qp` | Sections 4 and 5: knows no bodies |
 //! | `certificate` | accuracy of an answer, computed from matrices and rows alone |
 //! | `progress` | progress reports, log, cancelling, time limit |
@@ -97,6 +98,8 @@ mod serving;
 mod setup;
 mod solve;
 pub mod solver;
+#[doc(hidden)]
+pub mod surface;
 
 // The sources of crate paper, among the unit tests, know this library by its name.
 #[cfg(test)]

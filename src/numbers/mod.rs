@@ -13,3 +13,4 @@ pub mod rounding;
 pub mod rows;
 pub mod setup;
 pub mod solve;
+pub mod surface;
