@@ -59,10 +59,12 @@ pub struct Place {
     pub body: Option<usize>,
     pub component: Option<usize>,
     pub element: Option<usize>,
+    /// Pair of surfaces.
+    pub pair: Option<usize>,
     /// Face of a surface.
     pub face: Option<usize>,
     pub dof: Option<usize>,
-    /// Node with friction.
+    /// Node with friction; with a pair or a face node of a surface.
     pub node: Option<usize>,
     pub row: Option<usize>,
     /// The kind of the row: 0, 1, 2 for contact, equality, tangential rows.
@@ -96,6 +98,7 @@ impl fmt::Display for Place {
             ("body", self.body),
             ("component", self.component),
             ("element", self.element),
+            ("pair", self.pair),
             ("face", self.face),
             ("dof", self.dof),
             ("node", self.node),
@@ -156,6 +159,7 @@ impl Error {
         rank: usize,
         component: usize,
         element: usize,
+        pair: usize,
         face: usize,
         dof: usize,
         node: usize,

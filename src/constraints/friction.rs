@@ -119,6 +119,13 @@ impl Friction {
         Ok(Self { dim: self.dim, nodes: self.nodes.clone(), rows: self.rows.copied(what)? })
     }
 
+    /// Drops all nodes but the first `count`.
+    pub fn keep_first(&mut self, count: usize) {
+        self.nodes.truncate(count);
+        self.dim = if count > 0 { self.dim } else { 0 };
+        self.rows.keep_first(count * self.dim);
+    }
+
     /// Appends nodes; returns the number of the first. An error changes nothing.
     pub fn add(&mut self, input: FrictionInput, contact: &RowSet, offsets: &[usize]) -> Result<usize> {
         let (first, count) = (self.len(), input.normal.len());

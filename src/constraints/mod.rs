@@ -12,6 +12,7 @@ mod entries;
 mod friction;
 mod grouping;
 mod kind;
+mod replaced;
 mod tabled;
 mod taken;
 mod touched;

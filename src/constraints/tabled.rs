@@ -115,9 +115,13 @@ impl Table {
         }
     }
 
-    /// Forgets all rows of a kind.
-    pub fn clear(&mut self, kind: RowKind) {
-        self.rows[kind as usize] = TabledRows::default();
+    /// Forgets the rows of a kind from `first` on.
+    pub fn keep_before(&mut self, kind: RowKind, first: usize) {
+        let own = &mut self.rows[kind as usize];
+        let count = own.number.partition_point(|row| *row < first);
+        own.number.truncate(count);
+        own.rhs.truncate(count);
+        own.matrix.truncate(count);
     }
 
     /// Number, entries and right-hand side of the rows of a kind, as given.

@@ -274,8 +274,13 @@ impl SolvedModel {
     /// Threads for work on all bodies, limited by the number of unknowns: waking a thread for a few unknowns costs more
     /// than it saves.
     pub fn threads(&self) -> usize {
+        self.threads_for(self.sizes().dofs)
+    }
+
+    /// The same for work on unknowns or nodes of this number.
+    pub fn threads_for(&self, count: usize) -> usize {
         const FOR_EACH: usize = 500;
-        threads::count(self.settings.threads, self.sizes().dofs / FOR_EACH)
+        threads::count(self.settings.threads, count / FOR_EACH)
     }
 
     /// Which of these bodies must be processed on the thread that calls the library.

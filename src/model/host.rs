@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::constraints::Table;
 use crate::error::Result;
 use crate::model::contents::SolvedModel;
+use crate::model::pairs::Pairs;
 use crate::model::parts::Joint;
 use crate::model::settings::Settings;
 
@@ -22,6 +23,8 @@ pub struct HostModel {
     pub has_others: bool,
     /// Bodies given by elements are not cut unless the host says so.
     pub stays_whole: bool,
+    /// Surfaces, and which of them may meet.
+    pub pairs: Pairs,
     /// Increased if the numbers of a body change.
     pub numberings: u64,
     /// The host's table of unknowns, if it has given one.
@@ -51,6 +54,7 @@ impl HostModel {
             joined: None,
             has_others: false,
             stays_whole: false,
+            pairs: Pairs::default(),
             numberings: 0,
             table: None,
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::constraints::{Friction, FrictionInput, Resolved, RowKind, RowSet, RowsInput};
+use crate::constraints::{FrictionInput, Resolved, RowKind, RowsInput};
 use crate::error::{Error, Proof, Result};
 use crate::model::contents::{Counted, SolvedModel};
 use crate::model::host::HostModel;
@@ -48,8 +48,11 @@ impl HostModel {
     }
 
     pub fn clear_rows(&mut self, kind: RowKind) {
-        *self.rows_mut(kind) = RowSet::default();
-        self.forget_tabled(kind);
+        let own = self.rows_of_pairs(kind);
+        if kind != RowKind::Tangential {
+            self.rows_mut(kind).keep_first(own);
+        }
+        self.forget_tabled(kind, own);
         if kind != RowKind::Equality {
             self.clear_friction();
         }
@@ -116,8 +119,9 @@ impl HostModel {
     }
 
     pub fn clear_friction(&mut self) {
-        self.friction = Friction::default();
-        self.forget_tabled(RowKind::Tangential);
+        let own = self.rows_of_pairs(RowKind::Tangential);
+        self.friction.keep_first(own);
+        self.forget_tabled(RowKind::Tangential, own);
         self.revisions.rows += 1;
     }
 

@@ -109,9 +109,10 @@ impl HostModel {
         }
     }
 
-    pub(super) fn forget_tabled(&mut self, kind: RowKind) {
+    /// Rows of the kind from `first` on are gone.
+    pub(super) fn forget_tabled(&mut self, kind: RowKind, first: usize) {
         if let Some(table) = &mut self.table {
-            Arc::make_mut(table).clear(kind);
+            Arc::make_mut(table).keep_before(kind, first);
         }
     }
 

@@ -17,3 +17,8 @@ pub const EQUAL: f64 = 1e-10;
 pub const NEAR: f64 = 1e-6;
 /// Sine of the angle between an edge of the slave and the normal of the contact, below which another edge gives the tangent.
 pub const ALONG: f64 = 0.1;
+/// Angle between the outward normals of two surfaces, in degrees, from which they may meet: surfaces side by side have 0, and at 90 neither
+/// looks at the other.
+pub const ANGLE: f64 = 100.0;
+/// Overlap of a row that has lost all its unknowns, in parts of the surface's extent, that is rounding: a held node on a rigid face has 1e-17.
+pub const OVERLAP: f64 = 1e-9;

@@ -350,6 +350,7 @@ wire_struct!(Place {
     body,
     component,
     element,
+    pair,
     face,
     dof,
     node,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::constraints::{Friction, RowKind, RowSet, Table};
-use crate::model::SolvedModel;
+use crate::model::{Pairs, SolvedModel};
 use crate::solve::{Answer, Start};
 
 #[derive(Default)]
@@ -43,6 +43,8 @@ pub struct State {
     pub loads: Vec<Option<Box<[f64]>>>,
     /// Contact and equality rows, with c, h and 1/k.
     pub rows: [RowSet; 2],
+    /// Surfaces at their positions, and what nodes have met and keep.
+    pub pairs: Pairs,
     /// Nodes with friction: their laws, tangential rows, s_old and compliances.
     pub friction: Friction,
     /// What these rows are in the host's table of unknowns.

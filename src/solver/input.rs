@@ -7,9 +7,10 @@ use crate::constraints::{DofTableInput, FrictionInput, RowKind, RowsInput};
 use crate::error::Result;
 use crate::linalg::Borrowed;
 use crate::mesh::ElementStorage;
-use crate::model::{Settings, Sizes};
+use crate::model::{PairMethod, Settings, Sizes};
 use crate::platform::memory::Headroom;
 use crate::solver::Problem;
+use crate::surface::{RigidShape, Shape};
 
 /// Methods that call those of the model: first the changes, then the rest.
 macro_rules! input {
@@ -126,7 +127,7 @@ input! {
     /// rigid rows. The multipliers of the last solve remain valid as a start.
     fn set_compliance(&mut self, kind: RowKind, first: usize, inv_k: &[f64]) -> Result<()>;
 
-    /// Drops all rows of one kind; with contact rows also all nodes with friction.
+    /// Drops all rows of one kind but those of pairs; with contact rows also all nodes with friction but those of pairs.
     fn clear_rows(&mut self, kind: RowKind);
 
     /// Adds nodes with friction and returns the number of the first. Without `body`, the unknowns of their tangential
@@ -143,8 +144,40 @@ input! {
     /// Sets s_old of `count` nodes, (dim, nodes), length: the slip at the start of the step.
     fn set_friction_reference(&mut self, first: usize, count: usize, dim: usize, s_old: &[f64]) -> Result<()>;
 
-    /// Drops all nodes with friction; their contact rows remain.
+    /// Drops all nodes with friction but those of pairs; their contact rows remain.
     fn clear_friction(&mut self);
+
+    /// Adds a surface over nodes at `x` (columns of `ldx` numbers, length) and returns its number. `dof`, with its columns, is the unknown of
+    /// each direction in the body, below 0 for held ones; without `body` they are the host's numbers, or unknowns of all bodies in sequence.
+    /// Without `dof` it is a tool that nothing moves but the host, the master of its pairs.
+    fn surface_add(&mut self, body: Option<usize>, dim: usize, x: &[f64], ldx: usize,
+        dof: Option<(&[i64], usize)>) -> Result<usize>;
+
+    /// Adds faces of one shape to a surface, before its pairs, and returns the number of the first. Seen from outside of the body the corners
+    /// go counterclockwise; in the plane the body is on the left. A surface without faces is a cloud of points, which may be a slave.
+    fn surface_faces(&mut self, surface: usize, shape: Shape, node: &[i64]) -> Result<usize>;
+
+    /// Adds a rigid plane (point, outward normal), sphere or circle (centre, radius) or cylinder (point, axis, radius); with a radius below 0
+    /// the body is outside of it.
+    fn surface_rigid(&mut self, dim: usize, shape: RigidShape, data: &[f64]) -> Result<usize>;
+
+    /// New positions of all nodes, or new data of a rigid surface; rows do not change before the next find.
+    fn surface_move(&mut self, surface: usize, x: &[f64], ldx: usize) -> Result<()>;
+
+    /// Adds a pair and returns its number and its first row. It has one contact row for each slave node in a face (or in a cloud), ascending;
+    /// a tie has an equality row for each direction of such a node. The numbers never change: pairs come before rows of the host. Nodes have
+    /// a partner up to `distance`, length.
+    fn pair_add(&mut self, slave: usize, master: usize, method: PairMethod, is_tied: bool,
+        distance: f64) -> Result<(usize, usize)>;
+
+    /// Sets a number of a pair by its name. One number, or one for each slave node: `friction`, `cohesion` (shear per area at pressure 0),
+    /// `offset` (length, subtracted from gaps), `compliance` (length per pressure). One number: `adjust` (gaps of the first find up to this
+    /// length count as 0), `on`, `angle` (degrees between outward normals, at least), `depth` (deepest penetration that is believed, length),
+    /// `thickness` (plane), `axisymmetric` (the area is thickness times the first coordinate).
+    fn pair_set(&mut self, pair: usize, name: &str, value: &[f64]) -> Result<()>;
+
+    /// The next load step begins at the present positions; nodes keep no faces.
+    fn pairs_commit(&mut self);
 
     reads:
 

@@ -13,6 +13,7 @@ mod joints;
 mod known;
 mod made;
 mod noticed;
+mod pairs;
 mod problem;
 mod products;
 mod results;
@@ -29,14 +30,18 @@ pub use crate::constraints::{DofTableInput, FrictionInput, RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
 pub use crate::mesh::ElementStorage;
-pub use crate::model::{options, Method, OptionInfo, OptionValue, PaperStep1, PaperUnits, Settings, Sizes};
+pub use crate::model::{
+    options, Method, OptionInfo, OptionValue, PairMethod, PaperStep1, PaperUnits, Settings, Sizes,
+};
 pub use crate::progress::{Listener, LogLevel, LogListener, PhaseReport, Progress, Reply};
 pub use crate::qp::StepKind;
 pub use crate::ranks::{Link, Ranks, Traffic};
 pub use crate::serving::{serve, Rank};
 pub use crate::solve::{DualMethod, HostForm, Outcome, Report, RowState};
+pub use crate::surface::{RigidShape, Shape};
 pub use body_facts::{BodyFacts, Factors, Origin};
 pub use call::Call;
 pub use check::Candidate;
 pub use findings::Findings;
+pub use pairs::{PairFacts, PairField};
 pub use problem::Problem;

@@ -168,7 +168,7 @@ impl Problem {
 
     /// Runs `work` under watch, for at most `limit` seconds. Reports the remaining phases, or the failure, which is also
     /// kept.
-    fn watched<T>(
+    pub(super) fn watched<T>(
         &mut self,
         call: &str,
         limit: f64,
@@ -185,7 +185,7 @@ impl Problem {
         };
         let ended = ended.map_err(|mut error| {
             self.model.set_rank(&mut error.place);
-            error
+            self.with_pair(error)
         });
         let outcome = ended.and_then(|done| {
             watch.log.phases(&self.prepared.phases(&self.model, &watch.phases), usize::MAX)?;

@@ -23,7 +23,7 @@ impl Problem {
         Ok(())
     }
 
-    /// Keeps loads, rows, friction, multipliers and active set under a number that is never used again.
+    /// Keeps loads, rows, friction, positions and pairs of surfaces, multipliers and active set under a number that is never used again.
     pub fn save_state(&mut self) -> Result<usize> {
         self.save_together()?;
         let loads = self.model.bodies.iter().map(|given| copy_of(given.body.load.as_deref()));
@@ -33,6 +33,7 @@ impl Problem {
             rows: [self.model.contact.copied(WHAT)?, self.model.equalities.copied(WHAT)?],
             friction: self.model.friction.copied(WHAT)?,
             table: self.model.table.clone(),
+            pairs: self.model.pairs.clone(),
             previous: self.history().previous.clone(),
             answered: self.current().is_some(),
         };
@@ -42,7 +43,7 @@ impl Problem {
         Ok(history.saved - 1)
     }
 
-    /// Restores loads, rows, friction and multipliers; the matrices keep their present values. The saved state is kept.
+    /// Restores loads, rows, friction, positions and pairs of surfaces, and multipliers; the matrices keep their present values. The saved state is kept.
     /// The answer is also restored, unless matrices, rows or compliances differ or its setup no longer exists.
     pub fn restore_state(&mut self, number: usize) -> Result<()> {
         let fits = match self.restorable_together(number)? {
@@ -62,6 +63,10 @@ impl Problem {
             let what = "bodies were added since the state was saved: it no longer fits";
             return Err(Error::new(Kind::State, what));
         }
+        if !state.pairs.is_of(&model.pairs) {
+            let what = "surfaces or pairs were added since the state was saved: it no longer fits";
+            return Err(Error::new(Kind::State, what));
+        }
         Ok(state.is_of(model) && state.answered && state.bodies == model.revisions.bodies)
     }
 
@@ -72,12 +77,14 @@ impl Problem {
         let loads = state.loads.iter().map(|load| copy_of(load.as_deref())).collect::<Result<Vec<_>>>()?;
         let [contact, equalities] = [state.rows[0].copied(WHAT)?, state.rows[1].copied(WHAT)?];
         let friction = state.friction.copied(WHAT)?;
+        let pairs = state.pairs.clone();
         let same = state.is_of(model);
         prepared.forget_pairs();
         let previous = state.previous.clone();
         model.revisions.laws += u64::from(!same);
         (model.contact, model.equalities, model.friction) = (contact, equalities, friction);
         model.table.clone_from(&state.table);
+        model.pairs = pairs;
         model.bodies.iter_mut().zip(loads).for_each(|(given, load)| given.body.load = load);
         history.of(model.revisions.rows).start = [None, None, None];
         let answer = previous.clone().filter(|_| fits);

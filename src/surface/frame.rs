@@ -2,7 +2,7 @@
 
 use crate::surface::patch::Patch;
 use crate::surface::shape::{Functions, Parent};
-use crate::surface::vector::{cross, dot, length, plus, times, unit, Vector, E_Z, ZERO};
+use crate::surface::vector::{cross, dot, length, plus, times, unit, Vector, E_Z};
 
 /// e_1 along X_1, e_3 the normal, e_2 = e_3 x e_1: unit vectors at X(r).
 pub struct Frame {
@@ -32,13 +32,8 @@ impl Frame {
         self.e
     }
 
-    pub fn components(&self, d: Vector) -> [f64; 3] {
+    fn components(&self, d: Vector) -> [f64; 3] {
         self.e.map(|e| dot(e, d))
-    }
-
-    /// The vector with these components.
-    pub fn vector(&self, of: [f64; 3]) -> Vector {
-        (0..3).fold(ZERO, |sum, i| plus(sum, of[i], self.e[i]))
     }
 
     /// Of each node k the vector p_k with `w.dd = sum_k p_k.u_k`: how a vector d that the frame carries turns as the nodes move by u_k. With

@@ -1,6 +1,6 @@
 //! The faces of a surface in boxes: nearest boxes first.
 
-use rstar::{Envelope, PointDistance, RTree, RTreeObject, AABB};
+use rstar::{PointDistance, RTree, RTreeObject, AABB};
 
 use crate::error::Result;
 use crate::numbers::surface::RIM;
@@ -28,7 +28,8 @@ impl RTreeObject for FaceBox {
 
 impl PointDistance for FaceBox {
     fn distance_2(&self, point: &Vector) -> f64 {
-        self.envelope().distance_2(point)
+        let outside = |i: usize| (self.low[i] - point[i]).max(point[i] - self.high[i]).max(0.0);
+        (0..3).map(|i| outside(i) * outside(i)).sum()
     }
 }
 

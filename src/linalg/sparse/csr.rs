@@ -53,6 +53,14 @@ impl Csr {
         self.ptr.push(self.col.len());
     }
 
+    /// Drops all rows but the first `count`.
+    pub fn truncate(&mut self, count: usize) {
+        self.ptr.truncate(count + 1);
+        let entries = self.ptr.last().copied().unwrap_or(0);
+        self.col.truncate(entries);
+        self.val.truncate(entries);
+    }
+
     /// Entries `(column, value)` of row `i`.
     #[inline]
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {

@@ -1,0 +1,223 @@
+//! Surfaces: positions, faces, unknowns.
+
+use std::sync::Arc;
+
+use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::first_non_finite;
+use crate::model::host::HostModel;
+use crate::model::pairs::copied;
+use crate::platform::memory::refusal;
+use crate::surface::vector::{Vector, ZERO};
+use crate::surface::{Faces, Rigid, RigidShape, Shape};
+
+/// A surface at its present positions, and where it was at the beginning of the step.
+#[derive(Debug, Clone)]
+pub enum Geometry {
+    Nodes { faces: Arc<Faces>, x: Vec<Vector>, begin: Arc<Vec<Vector>>, unknowns: Option<Arc<Unknowns>> },
+    Rigid { now: Rigid, begin: Rigid },
+}
+
+/// The unknowns of the nodes, one per direction; below 0: held.
+#[derive(Debug)]
+pub struct Unknowns {
+    /// Without a body they are those of all bodies, or the host's numbers.
+    pub body: Option<usize>,
+    pub dof: Vec<i64>,
+}
+
+impl Geometry {
+    pub fn dim(&self) -> usize {
+        match self {
+            Self::Nodes { faces, .. } => faces.dim,
+            Self::Rigid { now, .. } => now.dim,
+        }
+    }
+
+    /// There is something to meet.
+    pub fn has_points(&self) -> bool {
+        match self {
+            Self::Nodes { faces, .. } => faces.len() > 0,
+            Self::Rigid { .. } => true,
+        }
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Nodes { x, .. } => x.len(),
+            Self::Rigid { .. } => 0,
+        }
+    }
+
+    /// The nodes of its faces, ascending; of a cloud all nodes.
+    pub(super) fn slave_nodes(&self) -> Result<Vec<u32>> {
+        let refused = |what: &str| Err(Error::argument("slave", what));
+        let Self::Nodes { faces, unknowns, .. } = self else {
+            return refused("a rigid surface cannot be the slave");
+        };
+        if unknowns.is_none() {
+            return refused("a surface without unknowns cannot be the slave");
+        }
+        if faces.nodes == 0 {
+            return refused("this surface has no nodes");
+        }
+        let nodes: Vec<u32> =
+            if faces.len() > 0 { faces.used().collect() } else { (0..faces.nodes as u32).collect() };
+        copied(nodes.into_iter())
+    }
+
+    /// The step begins at the present positions.
+    pub(super) fn begin_here(&mut self) {
+        match self {
+            Self::Nodes { x, begin, .. } => *begin = Arc::new(x.clone()),
+            Self::Rigid { now, begin } => *begin = *now,
+        }
+    }
+}
+
+impl HostModel {
+    pub fn surface_add(
+        &mut self,
+        body: Option<usize>,
+        dim: usize,
+        x: &[f64],
+        ldx: usize,
+        dof: Option<(&[i64], usize)>,
+    ) -> Result<usize> {
+        if self.has_others {
+            let what = "surfaces are not available for problems of several ranks";
+            return Err(Error::new(Kind::Unsupported, what));
+        }
+        let x = positions(dim, x, ldx)?;
+        let faces = Faces::new(dim, x.len())?;
+        let unknowns = dof.map(|dof| self.unknowns_of(body, dim, x.len(), dof)).transpose()?.map(Arc::new);
+        let begin = Arc::new(copied(x.iter().copied())?);
+        self.push_surface(Geometry::Nodes { faces: Arc::new(faces), x, begin, unknowns })
+    }
+
+    pub fn surface_rigid(&mut self, dim: usize, shape: RigidShape, data: &[f64]) -> Result<usize> {
+        let now = Rigid::new(dim, shape, data)?;
+        self.push_surface(Geometry::Rigid { now, begin: now })
+    }
+
+    fn push_surface(&mut self, surface: Geometry) -> Result<usize> {
+        let surfaces = &mut self.pairs.surfaces;
+        surfaces.try_reserve(1).map_err(|_| refusal(size_of::<Geometry>(), "a surface"))?;
+        surfaces.push(surface);
+        Ok(surfaces.len() - 1)
+    }
+
+    pub fn surface_faces(&mut self, surface: usize, shape: Shape, node: &[i64]) -> Result<usize> {
+        self.pairs.surface(surface, "surface")?;
+        let used = |pair: &super::Pair| pair.slave == surface || pair.master == surface;
+        if self.pairs.pairs.iter().any(used) {
+            let what = "a pair has this surface: faces come before pairs";
+            return Err(Error::new(Kind::State, what).index(surface as i64));
+        }
+        match &mut self.pairs.surfaces[surface] {
+            Geometry::Nodes { faces, x, .. } => Arc::make_mut(faces).add(shape, node, x),
+            Geometry::Rigid { .. } => Err(Error::argument("surface", "a rigid surface has no faces")),
+        }
+    }
+
+    pub fn surface_move(&mut self, surface: usize, x: &[f64], ldx: usize) -> Result<()> {
+        self.pairs.surface(surface, "surface")?;
+        match &mut self.pairs.surfaces[surface] {
+            Geometry::Nodes { faces, x: present, .. } => {
+                let moved = positions(faces.dim, x, ldx)?;
+                if moved.len() != faces.nodes {
+                    let what = format!("the surface has {} nodes, not {}", faces.nodes, moved.len());
+                    return Err(Error::argument("x", what)
+                        .value(moved.len() as f64)
+                        .limit(faces.nodes as f64));
+                }
+                *present = moved;
+            }
+            Geometry::Rigid { now, .. } => *now = Rigid::new(now.dim, now.shape, x)?,
+        }
+        Ok(())
+    }
+
+    /// Checked against the numbers that there are now.
+    fn unknowns_of(
+        &self,
+        body: Option<usize>,
+        dim: usize,
+        nodes: usize,
+        (dof, ldd): (&[i64], usize),
+    ) -> Result<Unknowns> {
+        if ldd < dim || dof.len() != ldd * nodes {
+            let what = format!(
+                "{nodes} nodes of {dim} unknowns do not fill {} numbers in columns of {ldd}",
+                dof.len()
+            );
+            return Err(Error::argument("dof", what).value(dof.len() as f64));
+        }
+        let numbers = (0..dim * nodes).map(|i| dof[i / dim * ldd + i % dim].max(-1));
+        let unknowns = Unknowns { body, dof: copied(numbers)? };
+        self.places_of_surface(&unknowns).map_err(|error| match error.place.entry {
+            Some(entry) => error.node(entry / dim).entry(entry / dim * ldd + entry % dim),
+            None => error,
+        })?;
+        Ok(unknowns)
+    }
+
+    /// The unknowns among those of all bodies; -1 for those held.
+    pub fn places_of_surface(&self, unknowns: &Unknowns) -> Result<Vec<i64>> {
+        let (first, end) = match unknowns.body {
+            Some(body) => (self.offsets[..].get(body).copied().unwrap_or(0), self.order(body)?),
+            None => (0, self.sizes().dofs),
+        };
+        let mut free: Vec<i64> = copied(unknowns.dof.iter().copied())?;
+        free.retain(|dof| *dof >= 0);
+        let numbered = match unknowns.body {
+            Some(_) => None,
+            None => self.places_of(&[0, free.len()], &free).map_err(|mut error| {
+                // the position among all numbers
+                let at = error
+                    .place
+                    .entry
+                    .and_then(|at| (0..unknowns.dof.len()).filter(|i| unknowns.dof[*i] >= 0).nth(at));
+                (error.place.entry, error.place.row) = (at, None);
+                error
+            })?,
+        };
+        let mut next = numbered.iter().flatten();
+        let mut places = copied(unknowns.dof.iter().copied())?;
+        for (entry, place) in places.iter_mut().enumerate().filter(|(_, place)| **place >= 0) {
+            *place = match next.next() {
+                Some(known) => *known,
+                None if (*place as usize) < end => first as i64 + *place,
+                None => {
+                    let what = format!("unknown {} is outside the {end} unknowns", crate::error::INDEX);
+                    let error = Error::argument("dof", what).entry(entry).index(*place);
+                    return Err(unknowns.body.map_or(error.clone(), |body| error.body(body)));
+                }
+            };
+        }
+        Ok(places)
+    }
+}
+
+/// Finite positions from columns of `ldx` numbers; the third coordinate of the plane is 0.
+fn positions(dim: usize, x: &[f64], ldx: usize) -> Result<Vec<Vector>> {
+    if !(2..=3).contains(&dim) {
+        return Err(Error::argument("dim", "a surface has 2 or 3 dimensions").value(dim as f64));
+    }
+    if ldx < dim || x.len() % ldx != 0 {
+        let what = format!("{} numbers are no columns of {ldx} with {dim} coordinates", x.len());
+        return Err(Error::argument("x", what).value(x.len() as f64));
+    }
+    let all = x.chunks_exact(ldx);
+    if let Some((node, i)) =
+        all.clone().enumerate().find_map(|(k, x)| Some((k, first_non_finite(&x[..dim])?)))
+    {
+        let error = Error::argument("x", "the coordinate is not a finite number");
+        return Err(error.node(node).entry(node * ldx + i).value(x[node * ldx + i]));
+    }
+    copied(all.map(|x| {
+        let mut point = ZERO;
+        point[..dim].copy_from_slice(&x[..dim]);
+        point
+    }))
+}
