@@ -10,6 +10,7 @@ mod lent;
 mod log;
 mod numbering;
 mod outcome;
+mod pairs;
 mod response;
 mod results;
 mod rows;

@@ -205,7 +205,7 @@ fn a_node_keeps_its_face_a_little_beyond_the_edge_until_a_new_step() {
         let placed = Placed { faces: &master.faces, x: &master.x, normals: &normals };
         let all = Master::Faces(placed, Tree::new(&master.faces, &master.x).unwrap());
         let mut kept = [NONE];
-        let mut at = |x: f64, kept: &mut [u32; 1]| {
+        let at = |x: f64, kept: &mut [u32; 1]| {
             let mut p = [x, 0.1, 0.0];
             p[z] = roof(x);
             match find(1, &all, &rule(0.5), &[(p, crate::surface::vector::ZERO)], kept).unwrap()[0] {
@@ -254,5 +254,19 @@ fn finds_have_the_same_bits_again_and_on_two_threads() {
         assert!(once == again && kept == first, "{shape:?}");
         assert!(once.iter().flatten().count() > slave.x.len() / 2);
         assert!(kept.iter().filter(|kept| **kept != NONE).count() > slave.x.len() / 4);
+    }
+}
+
+#[test]
+fn a_find_ends_when_it_is_cancelled() {
+    use crate::platform::Interrupt;
+    use std::sync::atomic::AtomicBool;
+    let plate = random_mesh(Shape::Quad4, 30, 0.1);
+    let cancelled = Interrupt::new(std::sync::Arc::new(AtomicBool::new(true)));
+    for threads in [1, 2] {
+        let mut kept = vec![NONE; plate.x.len()];
+        let ended = cancelled.during(|| found(&plate, &plate, rule(0.1), threads, &mut kept));
+        assert_eq!(ended.unwrap_err().kind, crate::error::Kind::Cancelled);
+        assert!(kept.iter().all(|kept| *kept == NONE));
     }
 }

@@ -1,0 +1,120 @@
+//! Ties over gaps.
+
+use super::*;
+use crate::solver::{Outcome, PairField, RowKind};
+
+/// Two floating blocks with a gap of 0.3 between them.
+fn tied(dim: usize) -> (Problem, [Block; 2], [usize; 2], [usize; 2], usize) {
+    let (size, steps) = (&[1.5, 1.0, 1.0][3 - dim..], &[3, 2, 2][3 - dim..]);
+    let mut low = vec![0.0; dim];
+    let lower = block(&low, size, steps, |_| false);
+    low[dim - 1] = size[dim - 1] + 0.3;
+    low[0] = 0.2;
+    let upper = block(&low, &size.iter().map(|s| 0.7 * s).collect::<Vec<_>>(), steps, |_| false);
+    let mut problem = Problem::new();
+    let bodies = [lower.give(&mut problem), upper.give(&mut problem)];
+    let surfaces =
+        [lower.surface(&mut problem, bodies[0], true), upper.surface(&mut problem, bodies[1], false)];
+    let made = problem.pair_add(surfaces[1], surfaces[0], PairMethod::NodeToFace, true, 0.5).unwrap().0;
+    (problem, [lower, upper], bodies, surfaces, made)
+}
+
+#[test]
+fn ties_over_a_gap_leave_the_motions_of_a_floating_pair_free() {
+    for dim in [2, 3] {
+        let (mut problem, blocks, bodies, surfaces, made) = tied(dim);
+        problem.pairs_find().unwrap();
+        let rows = &problem.model.equalities;
+        assert_eq!(rows.len(), dim * blocks[1].side(false).len());
+        assert!(rows.rhs.iter().all(|h| *h == 0.0) && (0..rows.len()).all(|i| !rows.is_empty_row(i)));
+        let turns: &[[usize; 2]] = if dim == 2 { &[[0, 1]] } else { &[[0, 1], [1, 2], [2, 0]] };
+        for [i, j] in turns {
+            let u: Vec<f64> = blocks
+                .iter()
+                .flat_map(|block| block.x.chunks(dim))
+                .flat_map(|x| {
+                    let mut u = vec![0.0; dim];
+                    (u[*i], u[*j]) = (-x[*j], x[*i]);
+                    u
+                })
+                .collect();
+            for row in 0..rows.len() {
+                let work = rows.matrix.row_dot(row, &u);
+                assert!(work.abs() <= 1e-13 * rows.matrix.row_dot_abs(row, &u), "{work:e}");
+            }
+        }
+        // a pull at both ends: what hangs together is not strained by the gap
+        let pull = |block: &Block, top: bool, force: f64| {
+            let (side, mut f) = (block.side(top), vec![0.0; block.dof.len()]);
+            let each = force / side.len() as f64;
+            side.iter().for_each(|node| f[dim * node + dim - 1] = each);
+            // its line of action through the middle of both blocks
+            f
+        };
+        let _ = (&pull, bodies);
+        let report = problem.solve().unwrap();
+        assert_eq!(report.outcome, Outcome::Solved);
+        assert!(problem.displacements().unwrap().iter().all(|u| u.abs() < 1e-12), "nothing is strained");
+        // both turn by half a radian: nothing has opened
+        for (block, surface) in blocks.iter().zip(surfaces) {
+            let (c, s) = (0.5f64.cos(), 0.5f64.sin());
+            let turned: Vec<f64> = block
+                .x
+                .chunks(dim)
+                .flat_map(|x| {
+                    let mut x = x.to_vec();
+                    (x[0], x[dim - 1]) = (c * x[0] - s * x[dim - 1], s * x[0] + c * x[dim - 1]);
+                    x
+                })
+                .collect();
+            problem.surface_move(surface, &turned, dim).unwrap();
+        }
+        problem.pairs_find().unwrap();
+        assert!(problem.model.equalities.rhs.iter().all(|h| h.abs() < 1e-15));
+        // one of them moves away by 0.1 along the normal: the next solve closes that
+        let away: Vec<f64> = blocks[1]
+            .x
+            .chunks(dim)
+            .flat_map(|x| {
+                let mut x = x.to_vec();
+                x[dim - 1] += 0.1;
+                x
+            })
+            .collect();
+        problem.surface_move(surfaces[1], &away, dim).unwrap();
+        problem.surface_move(surfaces[0], &blocks[0].x, dim).unwrap();
+        problem.pairs_find().unwrap();
+        let h = &problem.model.equalities.rhs;
+        assert!(
+            h.chunks(dim).all(|h| (h[0] + 0.1).abs() < 1e-15 && h[1..].iter().all(|h| h.abs() < 1e-15)),
+            "{h:?}"
+        );
+        let gap = problem.pair_field(made, PairField::Normal).unwrap();
+        assert!(blocks[1].side(false).iter().all(|node| gap[dim * node + dim - 1] == -1.0));
+    }
+}
+
+#[test]
+fn a_tie_carries_tension_and_shear() {
+    let (mut problem, blocks, bodies, _, made) = tied(2);
+    problem.pairs_find().unwrap();
+    // supports by further rows: the lower block's foot is fixed
+    let foot = blocks[0].side(false);
+    let dof: Vec<i64> = foot.iter().flat_map(|node| [2 * *node as i64, 2 * *node as i64 + 1]).collect();
+    let ptr: Vec<usize> = (0..=dof.len()).collect();
+    let (body, val) = (vec![bodies[0] as i64; dof.len()], vec![1.0; dof.len()]);
+    let rows = crate::solver::RowsInput { ptr: &ptr, body: Some(&body), dof: &dof, val: &val, rhs: None };
+    problem.add_rows(RowKind::Equality, rows).unwrap();
+    let top = blocks[1].side(true);
+    let mut load = vec![0.0; blocks[1].dof.len()];
+    top.iter().for_each(|node| (load[2 * node], load[2 * node + 1]) = (2e-4, 1e-3));
+    problem.set_load(bodies[1], &load).unwrap();
+    assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+    let facts = problem.pair_info(made).unwrap();
+    let count = top.len() as f64;
+    assert!(
+        (facts.force[0] + 2e-4 * count).abs() < 1e-9 && (facts.force[1] + 1e-3 * count).abs() < 1e-9,
+        "{facts:?}"
+    );
+    assert!(problem.pair_field(made, PairField::Force).unwrap().iter().sum::<f64>() < 0.0, "tension");
+}
