@@ -3,7 +3,7 @@
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::first_non_finite;
-use crate::platform::memory::copied;
+use crate::platform::memory::{copied, headroom};
 use crate::solver::history::{Current, State};
 use crate::solver::problem::Problem;
 
@@ -27,6 +27,7 @@ impl Problem {
     pub fn save_state(&mut self) -> Result<usize> {
         self.save_together()?;
         let loads = self.model.bodies.iter().map(|given| copy_of(given.body.load.as_deref()));
+        let _room = headroom(self.model.pairs.bytes(), WHAT)?;
         let state = State {
             bodies: self.model.revisions.bodies,
             loads: loads.collect::<Result<_>>()?,
@@ -77,6 +78,7 @@ impl Problem {
         let loads = state.loads.iter().map(|load| copy_of(load.as_deref())).collect::<Result<Vec<_>>>()?;
         let [contact, equalities] = [state.rows[0].copied(WHAT)?, state.rows[1].copied(WHAT)?];
         let friction = state.friction.copied(WHAT)?;
+        let _room = headroom(state.pairs.bytes(), WHAT)?;
         let pairs = state.pairs.clone();
         let same = state.is_of(model);
         prepared.forget_pairs();

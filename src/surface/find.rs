@@ -1,5 +1,7 @@
 //! The partner of every slave node: the nearest foot that may be believed.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use crate::error::Result;
 use crate::linalg::vector::NOISE;
 use crate::numbers::surface::EQUAL;
@@ -9,7 +11,7 @@ use crate::surface::faces::NONE;
 use crate::surface::foot::{Foot, Node, Placed};
 use crate::surface::rigid::{Rigid, RigidFoot};
 use crate::surface::tree::Tree;
-use crate::surface::vector::{largest, Vector};
+use crate::surface::vector::{dot, largest, Vector};
 
 /// Which feet are believed.
 #[derive(Debug, Clone, Copy)]
@@ -33,6 +35,26 @@ pub enum Master<'a> {
 pub enum Partner {
     Face(Foot),
     Rigid(RigidFoot),
+}
+
+impl Partner {
+    pub fn gap(&self) -> f64 {
+        match self {
+            Self::Face(Foot { gap, .. }) | Self::Rigid(RigidFoot { gap, .. }) => *gap,
+        }
+    }
+
+    /// The master's outward normal.
+    pub fn normal(&self) -> Vector {
+        match self {
+            Self::Face(Foot { normal, .. }) | Self::Rigid(RigidFoot { normal, .. }) => *normal,
+        }
+    }
+
+    /// The line from foot to node is not the normal: the node is at the foot on an edge.
+    pub fn is_askew(&self) -> bool {
+        matches!(self, Self::Face(foot) if foot.distance != foot.gap.abs())
+    }
 }
 
 /// Nodes of one task.
@@ -79,6 +101,33 @@ impl Master<'_> {
             }
         }
     }
+}
+
+/// Which of the nodes could have another partner, whose direction differs by more than 45 degrees from that of their own: two walls of one
+/// surface need two surfaces.
+pub fn between_walls(
+    threads: usize,
+    placed: &Placed,
+    tree: &Tree,
+    rule: &Rule,
+    nodes: &[(Vector, Vector)],
+    partners: &[Option<Partner>],
+) -> Result<Vec<bool>> {
+    let has_other = |k: usize| {
+        let ((x, normal), Some(own)) = (nodes[k], &partners[k]) else { return false };
+        let node = Node { x, normal, cosine: rule.cosine };
+        let is_other = |foot: &Foot| {
+            let may = rule.allows(foot.gap, foot.distance) && node.faces(foot.normal);
+            may && dot(foot.normal, own.normal()) < FRAC_1_SQRT_2
+        };
+        let near = tree.near(x).take_while(|(_, square)| square.sqrt() <= rule.distance);
+        near.filter_map(|(face, _)| placed.foot(face, &node)).any(|foot| is_other(&foot))
+    };
+    let of_task = run(threads, nodes.len().div_ceil(TOGETHER), |task| {
+        check()?;
+        Ok((TOGETHER * task..nodes.len().min(TOGETHER * (task + 1))).map(has_other).collect::<Vec<_>>())
+    })?;
+    Ok(of_task.concat())
 }
 
 impl Rule {

@@ -51,10 +51,11 @@ impl Node {
 struct Around {
     /// Mean outward normal.
     normal: Vector,
-    /// The node looks at all faces there.
-    all_faced: bool,
-    /// No face there leads closer to the node.
+    /// Edges of the face beyond which lies a face at which the node does not look.
+    ends: [bool; 4],
+    /// No face there leads closer to the node, and none of those at which the node looks.
     is_nearest: bool,
+    is_nearest_of_faced: bool,
 }
 
 impl Placed<'_> {
@@ -63,36 +64,45 @@ impl Placed<'_> {
     }
 
     /// The foot of a node on the closed face, if no other face at the foot is nearer. A face is continued by `RIM` where the surface ends,
-    /// and where it bends away so far that the node does not look at the face beyond; a foot further out is none.
+    /// and where it bends away so far that the node does not look at the face beyond; a foot further out is none, unless it is the nearest
+    /// point of all faces.
     pub fn foot(&self, face: usize, node: &Node) -> Option<Foot> {
         let patch = self.patch(face);
-        let is_rim = |edge: usize| self.faces.beyond(face, edge).is_none();
-        let domain = Domain::grown(patch.shape, |edge| if is_rim(edge) { RIM } else { 0.0 });
-        let r = patch.nearest(node.x, &domain);
-        let mut on = domain.edges_of(r);
-        let Some(edge) = on.next() else { return Some(self.inside(face, &patch, r, node.x)) };
-        let other = on.next();
-        if is_rim(edge) || other.is_some_and(is_rim) {
-            return None;
-        }
-        let from = minus(node.x, patch.point(r));
-        let around = match other {
-            _ if patch.shape.dim() == 2 => self.beyond_edge(face, &patch, (edge, r), from, node),
-            None => self.beyond_edge(face, &patch, (edge, r), from, node),
-            // the corner with which the later edge begins, or edge 0
-            Some(other) => self.around_corner(face, if edge + 1 == other { other } else { edge }, from, node),
-        };
-        let grown =
-            |k: usize| if k == edge || Some(k) == other || around.is_none() || is_rim(k) { RIM } else { 0.0 };
-        match around {
-            Some(Around { all_faced: true, normal, is_nearest }) => {
-                is_nearest.then(|| self.joined(face, &patch, r, from, normal))
+        let edges = patch.shape.corners().len();
+        let mut ends: [bool; 4] = std::array::from_fn(|k| k < edges && self.faces.beyond(face, k).is_none());
+        let mut beyond_end = None;
+        for _ in 0..=edges {
+            let domain = Domain::grown(patch.shape, |edge| if ends[edge] { RIM } else { 0.0 });
+            let r = patch.nearest(node.x, &domain);
+            let mut on = domain.edges_of(r);
+            let Some(edge) = on.next() else { return Some(self.inside(face, &patch, r, node.x)) };
+            let other = on.next().filter(|_| patch.shape.dim() == 3);
+            if ends[edge] || other.is_some_and(|other| ends[other]) {
+                break;
             }
-            _ => self.inside_grown(face, node.x, grown).or_else(|| {
-                let around = around.filter(|around| around.is_nearest)?;
-                Some(self.joined(face, &patch, r, from, around.normal))
-            }),
+            let from = minus(node.x, patch.point(r));
+            let around = match other {
+                None => self.beyond_edge(face, &patch, (edge, r), from, node),
+                // the corner with which the later edge begins, or edge 0
+                Some(other) => {
+                    self.around_corner(face, if edge + 1 == other { other } else { edge }, from, node)
+                }
+            };
+            match around {
+                Some(around) if !around.ends.contains(&true) => {
+                    let joined = || self.joined(face, &patch, r, from, around.normal);
+                    return around.is_nearest_of_faced.then(joined);
+                }
+                Some(around) => {
+                    if around.is_nearest {
+                        beyond_end = beyond_end.or(Some(self.joined(face, &patch, r, from, around.normal)));
+                    }
+                    (0..edges).for_each(|k| ends[k] |= around.ends[k]);
+                }
+                None => (0..edges).for_each(|k| ends[k] |= k == edge || Some(k) == other),
+            }
         }
+        beyond_end
     }
 
     /// The foot of a node that keeps this face: inside the face grown by `KEEP`, where the surface ends by `RIM`.
@@ -147,6 +157,7 @@ impl Placed<'_> {
         if !(-ON_EDGE..=1.0 + ON_EDGE).contains(&t) {
             return None;
         }
+        let beside = edge;
         let (there, edge) = self.faces.beyond(face, edge)?;
         let other = self.patch(there);
         let ([a, b], centre) = (ends(&other, edge), other.shape.centre());
@@ -165,10 +176,12 @@ impl Placed<'_> {
         };
         let own = patch.normal(&patch.shape.at(r));
         let limit = ON_EDGE * patch.size() * length(inward);
+        let is_nearest = dot(from, inward) <= limit;
         Some(Around {
             normal: unit(plus(own, 1.0, normal)).unwrap_or(own),
-            all_faced: node.faces(normal),
-            is_nearest: dot(from, inward) <= limit,
+            ends: std::array::from_fn(|k| k == beside && !node.faces(normal)),
+            is_nearest,
+            is_nearest_of_faced: is_nearest || !node.faces(normal),
         })
     }
 
@@ -180,18 +193,24 @@ impl Placed<'_> {
         if self.faces.is_on_rim(center) {
             return None;
         }
-        let mut around = Around { normal: self.normals[center as usize], all_faced: true, is_nearest: true };
+        let normal = self.normals[center as usize];
+        let mut around = Around { normal, ends: [false; 4], is_nearest: true, is_nearest_of_faced: true };
+        let edges = self.faces.shape(face).corners().len();
         let (mut at, mut k) = (face, corner);
-        for _ in 0..MOST {
+        for step in 0..MOST {
             let patch = self.patch(at);
-            let edges = patch.edges_at(k);
-            let normal = unit(cross(edges[0], edges[1])).unwrap_or_else(|| patch.centre_normal());
-            around.all_faced &= node.faces(normal);
-            around.is_nearest &= edges.iter().all(|e| dot(from, *e) <= ON_EDGE * patch.size() * length(*e));
+            let along = patch.edges_at(k);
+            let normal = unit(cross(along[0], along[1])).unwrap_or_else(|| patch.centre_normal());
+            let is_faced = node.faces(normal);
+            let is_nearest = along.iter().all(|e| dot(from, *e) <= ON_EDGE * patch.size() * length(*e));
+            around.is_nearest &= is_nearest;
+            around.is_nearest_of_faced &= is_nearest || !is_faced;
             // the face beyond the edge that begins here ends that edge here
             let (next, edge) = self.faces.beyond(at, k)?;
+            around.ends[corner] |= step == 1 && !is_faced;
             (at, k) = (next, (edge + 1) % self.faces.shape(next).corners().len());
             if at == face {
+                around.ends[(corner + edges - 1) % edges] |= step > 0 && !is_faced;
                 break;
             }
         }

@@ -26,7 +26,7 @@ pub mod vector;
 
 pub use areas::{areas, Depth};
 pub use faces::{Faces, NONE};
-pub use find::{find, Master, Partner, Rule};
+pub use find::{between_walls, find, Master, Partner, Rule};
 pub use foot::{Foot, Node, Placed};
 pub use rigid::{Rigid, RigidFoot, RigidShape};
 pub use rows::{rows, tie, Opposite, Row, Rows, Slave};

@@ -12,9 +12,9 @@
 use crate::numbers::surface::ALONG;
 use crate::surface::faces::Faces;
 use crate::surface::find::Partner;
-use crate::surface::foot::{Foot, Placed};
+use crate::surface::foot::Placed;
 use crate::surface::frame::Frame;
-use crate::surface::rigid::{Rigid, RigidFoot};
+use crate::surface::rigid::Rigid;
 use crate::surface::shape::{Shape, MOST};
 use crate::surface::vector::{
     across, any_across, cross, dot, length, minus, plus, times, unit, Vector, E_Z, ZERO,
@@ -136,26 +136,6 @@ impl Opposite<'_> {
             }
             _ => None,
         }
-    }
-}
-
-impl Partner {
-    pub fn gap(&self) -> f64 {
-        match self {
-            Self::Face(Foot { gap, .. }) | Self::Rigid(RigidFoot { gap, .. }) => *gap,
-        }
-    }
-
-    /// The master's outward normal.
-    pub fn normal(&self) -> Vector {
-        match self {
-            Self::Face(Foot { normal, .. }) | Self::Rigid(RigidFoot { normal, .. }) => *normal,
-        }
-    }
-
-    /// The line from foot to node is not the normal: the node is at the foot on an edge.
-    fn is_askew(&self) -> bool {
-        matches!(self, Self::Face(foot) if foot.distance != foot.gap.abs())
     }
 }
 

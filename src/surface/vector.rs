@@ -91,6 +91,6 @@ mod tests {
         assert!((length(turned(v, from, to)) - length(v)).abs() < 1e-15);
         assert!(length(minus(turned(turned(v, from, to), to, from), v)) < 1e-15);
         assert!(length(minus(turned(from, from, times(-1.0, from)), times(-1.0, from))) < 1e-15);
-        assert_eq!(dot(any_across(from), from).abs() < 1e-16, true);
+        assert!(dot(any_across(from), from).abs() < 1e-16);
     }
 }

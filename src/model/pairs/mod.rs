@@ -69,6 +69,8 @@ pub struct Pair {
     pub tied: Option<Vec<Option<Tied>>>,
     /// Areas of its nodes at the last find, length^2.
     pub areas: Vec<f64>,
+    /// Rows of the last find whose unknowns are all held, and the deepest overlap there, length.
+    pub held: (usize, f64),
 }
 
 impl Pair {
@@ -98,6 +100,14 @@ impl Pairs {
         let friction = |pairs: &Self| pairs.pairs.iter().map(|pair| pair.friction).collect::<Vec<_>>();
         let counts = |pairs: &Self| (pairs.surfaces.len(), pairs.pairs.len());
         counts(self) == counts(other) && friction(self) == friction(other)
+    }
+
+    /// Bytes of a copy, which shares faces and unknowns.
+    pub fn bytes(&self) -> usize {
+        let nodes: usize = self.surfaces.iter().map(Geometry::len).sum();
+        let rows: usize = self.pairs.iter().map(|pair| pair.nodes.len()).sum();
+        let each = size_of::<Option<Met>>() + size_of::<Option<Tied>>() + 8 * size_of::<f64>();
+        nodes * size_of::<Vector>() + rows * each
     }
 
     pub fn dim(&self, pair: &Pair) -> usize {
@@ -188,6 +198,7 @@ impl HostModel {
             adjusted: None,
             tied: None,
             areas: filled(nodes.len(), 0.0, WHAT)?,
+            held: (0, 0.0),
             nodes: Vec::new(),
         };
         pair.nodes = nodes;

@@ -6,6 +6,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::first_non_finite;
 use crate::model::host::HostModel;
 use crate::model::pairs::copied;
+use crate::numbers::body::LARGEST;
 use crate::platform::memory::refusal;
 use crate::surface::vector::{Vector, ZERO};
 use crate::surface::{Faces, Rigid, RigidShape, Shape};
@@ -214,6 +215,11 @@ fn positions(dim: usize, x: &[f64], ldx: usize) -> Result<Vec<Vector>> {
     {
         let error = Error::argument("x", "the coordinate is not a finite number");
         return Err(error.node(node).entry(node * ldx + i).value(x[node * ldx + i]));
+    }
+    if let Some(node) = all.clone().position(|x| x[..dim].iter().any(|v| v.abs() > LARGEST)) {
+        return Err(Error::argument("x", "the square of the coordinate overflows")
+            .node(node)
+            .entry(node * ldx));
     }
     copied(all.map(|x| {
         let mut point = ZERO;

@@ -1,11 +1,11 @@
 //! Sums over the nodes of a pair.
 
 use crate::error::Result;
-use crate::model::Geometry;
+use crate::model::{Geometry, Pair};
 use crate::solver::pairs::Sides;
 use crate::solver::problem::Problem;
 use crate::surface::vector::{cross, plus, Vector};
-use crate::surface::NONE;
+use crate::surface::{between_walls, find, Master, Opposite, Partner, Placed, Tree, NONE};
 
 /// What a pair carries and where it is closed, by the last answer; where it overlaps, at the present positions.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -25,6 +25,14 @@ pub struct PairFacts {
     pub largest_pressure: Option<(usize, f64)>,
     /// The slave node deepest in the master, and its penetration below the offset, length > 0.
     pub deepest: Option<(usize, f64)>,
+    /// The node of the master deepest in the slave, and its penetration, length > 0.
+    pub deepest_of_master: Option<(usize, f64)>,
+    /// Nodes that lie between two walls of the master and have a row with one of them only, and the first of these nodes.
+    pub between_walls: usize,
+    pub first_between: Option<usize>,
+    /// Rows of the last find whose unknowns are all held, and the deepest overlap there, length.
+    pub held: usize,
+    pub held_overlap: f64,
 }
 
 impl Problem {
@@ -52,28 +60,48 @@ impl Problem {
                 }
             }
         }
-        facts.deepest = self.deepest(pair)?;
+        (facts.held, facts.held_overlap) = of.held;
+        self.overlaps(of, &mut facts)?;
         Ok(facts)
     }
 
-    fn deepest(&self, pair: usize) -> Result<Option<(usize, f64)>> {
-        let of = self.model.pairs.pair(pair)?;
+    fn overlaps(&self, pair: &Pair, facts: &mut PairFacts) -> Result<()> {
         let normals = self.normals_of_surfaces()?;
-        let partners = Sides::of(&self.model, of, &normals)?.partners(&mut vec![NONE; of.nodes.len()])?;
-        let depth = |(k, partner): (usize, &Option<crate::surface::Partner>)| {
-            let depth = of.laws.offset[k] - partner.as_ref()?.gap();
-            (depth > 0.0).then_some((of.nodes[k] as usize, depth))
-        };
-        let all = partners.iter().enumerate().filter_map(depth);
-        Ok(all.fold(
-            None,
-            |most: Option<(usize, f64)>, of| {
-                if most.is_none_or(|most| of.1 > most.1) {
-                    Some(of)
-                } else {
-                    most
-                }
-            },
-        ))
+        let sides = Sides::of(&self.model, pair, &normals)?;
+        let partners = sides.partners(&mut vec![NONE; pair.nodes.len()])?;
+        facts.deepest = deepest(&pair.nodes, &partners, |k| pair.laws.offset[k]);
+        let Opposite::Faces(placed, _) = sides.master else { return Ok(()) };
+        let (threads, rule, nodes) = (sides.threads(), sides.rule(), sides.nodes());
+        let tree = Tree::new(placed.faces, placed.x)?;
+        let between = between_walls(threads, &placed, &tree, &rule, &nodes, &partners)?;
+        facts.between_walls = between.iter().filter(|between| **between).count();
+        facts.first_between = between.iter().position(|between| *between).map(|k| pair.nodes[k] as usize);
+        if sides.slave.faces.len() > 0 && pair.laws.scalars.is_on {
+            let of_master: Vec<u32> = placed.faces.used().collect();
+            let at: Vec<_> =
+                of_master.iter().map(|&k| (placed.x[k as usize], placed.normals[k as usize])).collect();
+            let slave = Placed { faces: sides.slave.faces, x: sides.slave.x, normals: sides.slave_normals };
+            let opposite = Master::Faces(slave, Tree::new(slave.faces, slave.x)?);
+            let partners = find(threads, &opposite, &rule, &at, &mut vec![NONE; at.len()])?;
+            facts.deepest_of_master = deepest(&of_master, &partners, |_| 0.0);
+        }
+        Ok(())
     }
+}
+
+/// The node that is deepest below its offset, and by how much.
+fn deepest(
+    nodes: &[u32],
+    partners: &[Option<Partner>],
+    offset: impl Fn(usize) -> f64,
+) -> Option<(usize, f64)> {
+    let depth = |(k, partner): (usize, &Option<Partner>)| {
+        let depth = offset(k) - partner.as_ref()?.gap();
+        (depth > 0.0).then_some((nodes[k] as usize, depth))
+    };
+    let all = partners.iter().enumerate().filter_map(depth);
+    all.fold(
+        None,
+        |most: Option<(usize, f64)>, of| if most.is_none_or(|most| of.1 > most.1) { Some(of) } else { most },
+    )
 }

@@ -11,11 +11,15 @@ use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::error::{Error, Kind, Result};
 use crate::model::{Geometry, HostModel, Met, Pair, PairMethod, PairRows, Tied};
 use crate::numbers::surface::OVERLAP;
+use crate::platform::memory::headroom;
 use crate::progress::LogLevel;
 use crate::solver::pairs::assembly::{Assembled, Assembly};
 use crate::solver::problem::Problem;
 use crate::surface::vector::{largest, minus, Vector};
 use crate::surface::{areas, find, Depth, Master, Opposite, Partner, Placed, Rule, Slave, Tree};
+
+/// Bytes of a slave node during a find: its rows, twice, and its partner.
+const PER_NODE: usize = 4096;
 
 /// What a find has made of one pair.
 struct Found {
@@ -24,6 +28,7 @@ struct Found {
     adjusted: Option<Vec<f64>>,
     tied: Option<Vec<Option<Tied>>>,
     areas: Vec<f64>,
+    held: (usize, f64),
     /// Contact rows or equality rows of a tie.
     rows: Assembled,
     tangential: Assembled,
@@ -42,13 +47,15 @@ impl Problem {
             problem.model.set_rows_of_pairs(rows_of(&problem.model, &all)?)?;
             for (pair, found) in problem.model.pairs.pairs.iter_mut().zip(all) {
                 (pair.kept, pair.met, pair.areas) = (found.kept, found.met, found.areas);
-                (pair.adjusted, pair.tied) = (found.adjusted, found.tied);
+                (pair.adjusted, pair.tied, pair.held) = (found.adjusted, found.tied, found.held);
             }
             lines.into_iter().try_for_each(|line| watch.log.say(LogLevel::Phase, || line))
         })
     }
 
     fn found_pairs(&self) -> Result<Vec<Found>> {
+        let nodes: usize = self.model.pairs.pairs.iter().map(|pair| pair.nodes.len()).sum();
+        let _room = headroom(nodes.saturating_mul(PER_NODE), "rows of pairs")?;
         let normals = self.normals_of_surfaces()?;
         let pairs = self.model.pairs.pairs.iter().enumerate();
         pairs.map(|(number, pair)| Sides::of(&self.model, pair, &normals)?.found(number)).collect()
@@ -93,25 +100,28 @@ impl<'a> Sides<'a> {
         self.model.threads_for(self.pair.nodes.len())
     }
 
+    fn rule(&self) -> Rule {
+        let scalars = self.pair.laws.scalars;
+        Rule { distance: scalars.distance, depth: scalars.depth, cosine: scalars.angle.to_radians().cos() }
+    }
+
+    /// Positions and normals of the nodes of the pair.
+    fn nodes(&self) -> Vec<(Vector, Vector)> {
+        let node = |&node: &u32| (self.slave.x[node as usize], self.slave_normals[node as usize]);
+        self.pair.nodes.iter().map(node).collect()
+    }
+
     /// The partners of all nodes of the pair; `kept` as in [`find`].
     fn partners(&self, kept: &mut [u32]) -> Result<Vec<Option<Partner>>> {
-        let scalars = self.pair.laws.scalars;
-        if !scalars.is_on {
+        if !self.pair.laws.scalars.is_on {
             return Ok(vec![None; self.pair.nodes.len()]);
         }
-        let rule = Rule {
-            distance: scalars.distance,
-            depth: scalars.depth,
-            cosine: scalars.angle.to_radians().cos(),
-        };
         let master = match self.master {
             Opposite::Faces(placed, _) => Master::Faces(placed, Tree::new(placed.faces, placed.x)?),
             Opposite::Rigid(rigid, _) => Master::Rigid(rigid),
         };
-        let node = |&node: &u32| (self.slave.x[node as usize], self.slave_normals[node as usize]);
-        let nodes: Vec<(Vector, Vector)> = self.pair.nodes.iter().map(node).collect();
         match self.pair.method {
-            PairMethod::NodeToFace => find(self.threads(), &master, &rule, &nodes, kept),
+            PairMethod::NodeToFace => find(self.threads(), &master, &self.rule(), &self.nodes(), kept),
         }
     }
 
@@ -135,6 +145,7 @@ impl<'a> Sides<'a> {
                 adjusted: None,
                 tied: Some(points),
                 areas,
+                held: (0, 0.0),
                 rows,
                 tangential: Assembled::default(),
             });
@@ -142,7 +153,7 @@ impl<'a> Sides<'a> {
         let partners = self.partners(&mut kept)?;
         let adjusted = pair.adjusted.clone().unwrap_or_else(|| self.adjusted(&partners));
         let (mut rows, mut tangential, met) = assembly.contact(self, &partners, &adjusted)?;
-        self.switch_off(number, &mut rows, &mut tangential)?;
+        let held = self.switch_off(number, &mut rows, &mut tangential)?;
         rows.compliance = pair
             .laws
             .compliance
@@ -150,7 +161,7 @@ impl<'a> Sides<'a> {
             .zip(&areas)
             .map(|(c, area)| if *c > 0.0 { c / area } else { 0.0 })
             .collect();
-        Ok(Found { kept, met, adjusted: Some(adjusted), tied: None, areas, rows, tangential })
+        Ok(Found { kept, met, adjusted: Some(adjusted), tied: None, areas, held, rows, tangential })
     }
 
     /// Gaps of the first find that count as 0.
@@ -167,8 +178,14 @@ impl<'a> Sides<'a> {
         partners.iter().enumerate().map(of).collect()
     }
 
-    /// Rows whose unknowns are all held never close, if they overlap by rounding at most.
-    fn switch_off(&self, number: usize, rows: &mut Assembled, tangential: &mut Assembled) -> Result<()> {
+    /// Rows whose unknowns are all held never close, if they overlap by rounding at most. Their number, and the deepest overlap.
+    fn switch_off(
+        &self,
+        number: usize,
+        rows: &mut Assembled,
+        tangential: &mut Assembled,
+    ) -> Result<(usize, f64)> {
+        let mut held = (0, 0.0f64);
         for k in 0..rows.len() {
             if rows.rhs[k] == f64::INFINITY || !rows.is_empty(k) {
                 continue;
@@ -183,10 +200,11 @@ impl<'a> Sides<'a> {
                     Error::new(Kind::GapsContradict, what).pair(number).node(self.pair.nodes[k] as usize);
                 return Err(error.value(rows.rhs[k]).limit(limit));
             }
+            held = (held.0 + 1, held.1.max(-rows.rhs[k]));
             rows.rhs[k] = f64::INFINITY;
             tangential.clear(k);
         }
-        Ok(())
+        Ok(held)
     }
 
     /// Largest coordinate of the box of the slave, length.

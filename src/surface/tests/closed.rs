@@ -3,7 +3,7 @@
 use super::*;
 use crate::linalg::random::scattered;
 use crate::surface::vector::{dot, length, minus, plus, times, unit};
-use crate::surface::{Foot, Node, Shape};
+use crate::surface::{between_walls, Foot, Node, Shape};
 
 const SPACE: [Shape; 5] = [Shape::Tri3, Shape::Tri6, Shape::Quad4, Shape::Quad8, Shape::Quad9];
 const PLANE: [Shape; 2] = [Shape::Line2, Shape::Line3];
@@ -268,5 +268,80 @@ fn a_find_ends_when_it_is_cancelled() {
         let ended = cancelled.during(|| found(&plate, &plate, rule(0.1), threads, &mut kept));
         assert_eq!(ended.unwrap_err().kind, crate::error::Kind::Cancelled);
         assert!(kept.iter().all(|kept| *kept == NONE));
+    }
+}
+
+/// A factor of 2 is exact, another one is not.
+#[test]
+fn units_and_the_order_of_faces_do_not_matter() {
+    for shape in Shape::ALL {
+        let (mut slave, master) = (random_mesh(shape, 12, 0.2), random_mesh(shape, 9, 0.3));
+        slave.x.iter_mut().for_each(|x| x[shape.dim() - 1] += 0.02);
+        let all = partners_of(&slave, &master, 1.0);
+        let scaled = |mesh: &Mesh, by: f64| Mesh {
+            x: mesh.x.iter().map(|x| times(by, *x)).collect(),
+            faces: mesh.faces.clone(),
+        };
+        for by in [(0.5f64).powi(30), 2f64.powi(30), 1e-9, 1e9] {
+            let other = partners_of(&scaled(&slave, by), &scaled(&master, by), by);
+            let is_exact = by.log2().fract() == 0.0;
+            for (a, b) in all.iter().zip(&other) {
+                let (Some(Partner::Face(a)), Some(Partner::Face(b))) = (a, b) else {
+                    assert!(a.is_none() && b.is_none());
+                    continue;
+                };
+                let exact = (a.face, a.r, a.normal, by * a.gap) == (b.face, b.r, b.normal, b.gap);
+                let close =
+                    (by * a.gap - b.gap).abs() < 1e-14 * by && length(minus(a.normal, b.normal)) < 1e-11;
+                assert!(if is_exact { exact } else { close }, "{shape:?} {by}: {a:?} {b:?}");
+            }
+        }
+        let faces: Vec<i64> = (0..master.faces.len())
+            .rev()
+            .flat_map(|face| master.faces.nodes_of(face))
+            .map(|k| i64::from(*k))
+            .collect();
+        let mut backwards = Mesh {
+            x: master.x.clone(),
+            faces: crate::surface::Faces::new(shape.dim(), master.x.len()).unwrap(),
+        };
+        backwards.faces.add(shape, &faces, &master.x).unwrap();
+        for (a, b) in all.iter().zip(&partners_of(&slave, &backwards, 1.0)) {
+            let (Some(Partner::Face(a)), Some(Partner::Face(b))) = (a, b) else {
+                assert!(a.is_none() && b.is_none());
+                continue;
+            };
+            assert!(
+                (a.gap - b.gap).abs() < 1e-14 && length(minus(a.normal, b.normal)) < 1e-11,
+                "{shape:?}: {a:?} {b:?}"
+            );
+        }
+    }
+}
+
+fn partners_of(slave: &Mesh, master: &Mesh, unit: f64) -> Vec<Option<Partner>> {
+    let rule = Rule { cosine: 2.0, ..rule(0.2 * unit) };
+    found(slave, master, rule, 1, &mut vec![NONE; slave.x.len()]).unwrap()
+}
+
+#[test]
+fn nodes_between_two_walls_of_one_surface_are_found() {
+    for shape in SPACE {
+        // a groove of 90 degrees with its bottom along y
+        let mut groove = random_mesh(shape, 6, 0.0);
+        groove.x.iter_mut().for_each(|x| x[2] = x[0].abs());
+        let normals = groove.faces.normals(&groove.x).unwrap();
+        let placed = Placed { faces: &groove.faces, x: &groove.x, normals: &normals };
+        let down = [0.0, 0.0, -1.0];
+        let nodes = [([0.05, 0.1, 0.2], down), ([0.7, 0.1, 0.75], down)];
+        let (rule, mut kept) = (rule(0.3), [NONE; 2]);
+        let master = Master::Faces(placed, Tree::new(&groove.faces, &groove.x).unwrap());
+        let partners = find(1, &master, &rule, &nodes, &mut kept).unwrap();
+        let tree = Tree::new(&groove.faces, &groove.x).unwrap();
+        assert_eq!(
+            between_walls(2, &placed, &tree, &rule, &nodes, &partners).unwrap(),
+            [true, false],
+            "{shape:?}"
+        );
     }
 }

@@ -97,6 +97,8 @@ fn a_held_node_that_overlaps_is_named_with_its_pair_and_rounding_is_not() {
     problem.pairs_find().unwrap();
     assert_eq!(problem.model.contact.rhs[0], f64::INFINITY, "switched off");
     assert!(problem.model.contact.rhs[1] < 1e-15);
+    let facts = problem.pair_info(made).unwrap();
+    assert!(facts.held == 1 && facts.held_overlap <= 1e-16, "{facts:?}");
     let before = problem.model.contact.rhs.clone();
     problem.surface_move(master, &[0.0, 1e-3, 0.0, 1.0], 2).unwrap();
     let error = problem.pairs_find().unwrap_err();
