@@ -9,6 +9,7 @@ mod joints;
 mod matrices;
 mod meshes;
 mod numbering;
+mod pairing;
 mod pairs;
 mod parts;
 mod pieces;

@@ -196,10 +196,12 @@ fn neighbours(shape: Shape, k: usize) -> [usize; 2] {
     }
 }
 
-/// The rows of a tie, along the vectors of the master's frame at the foot, and the components of w there; a face of the plane has two.
+/// The rows of a tie, along the vectors of the master's frame at the foot, and the components of w there. A rigid master is given as it was
+/// when the foot was found, and as it is now.
 pub fn tie(slave: &Slave, master: &Opposite, node: u32, partner: &Partner) -> Option<([Row; 3], [f64; 3])> {
-    let [now, _] = master.points(partner)?;
-    let w = minus(slave.x[node as usize], now.y());
-    let e = now.vectors();
-    Some((e.map(|e| now.row(e, w, true)), e.map(|e| dot(e, w))))
+    let [now, moved] = master.points(partner)?;
+    let point = if matches!(master, Opposite::Rigid(..)) { moved } else { now };
+    let w = minus(slave.x[node as usize], point.y());
+    let e = point.vectors();
+    Some((e.map(|e| point.row(e, w, true)), e.map(|e| dot(e, w))))
 }

@@ -5,7 +5,7 @@ use crate::model::{Geometry, HostModel, Met, Pair, Tied};
 use crate::platform::threads::run;
 use crate::solver::pairs::Sides;
 use crate::surface::vector::{times, Vector, ZERO};
-use crate::surface::{rows, tie, Partner, Row};
+use crate::surface::{rows, tie, Opposite, Partner, Row};
 
 /// Nodes of one task.
 const TOGETHER: usize = 512;
@@ -135,19 +135,25 @@ impl Assembly {
     pub fn points(&self, sides: &Sides, partners: &[Option<Partner>]) -> Vec<Option<Tied>> {
         let point = |(node, partner): (&u32, &Option<Partner>)| {
             let partner = (*partner)?;
-            Some((partner, tie(&sides.slave, &sides.master, *node, &partner)?.1))
+            Some((partner, tie(&sides.slave, &here(sides), *node, &partner)?.1))
         };
         sides.pair.nodes.iter().zip(partners).map(point).collect()
     }
 
     /// Equality rows along the normal and along the face, with what has opened since the points were found.
-    pub fn ties(&self, sides: &Sides, points: &[Option<Tied>]) -> Result<(Assembled, Vec<Option<Met>>)> {
+    /// `master` as in [`tie`].
+    pub fn ties(
+        &self,
+        sides: &Sides,
+        master: &Opposite,
+        points: &[Option<Tied>],
+    ) -> Result<(Assembled, Vec<Option<Met>>)> {
         let order = [2, 0, 1];
         let (mut all, mut met) = (Assembled::new(self.dim), Vec::new());
         for (node, point) in sides.pair.nodes.iter().zip(points) {
             let point = point.as_ref().filter(|_| sides.pair.laws.scalars.is_on);
-            let of = point
-                .and_then(|(partner, then)| Some((tie(&sides.slave, &sides.master, *node, partner)?, then)));
+            let of =
+                point.and_then(|(partner, then)| Some((tie(&sides.slave, master, *node, partner)?, then)));
             for direction in &order[..self.dim] {
                 match &of {
                     Some(((rows, now), then)) => {
@@ -166,5 +172,13 @@ impl Assembly {
             }));
         }
         Ok((all, met))
+    }
+}
+
+/// A rigid master where it is.
+fn here<'a>(sides: &Sides<'a>) -> Opposite<'a> {
+    match sides.master {
+        Opposite::Rigid(now, _) => Opposite::Rigid(now, now),
+        master => master,
     }
 }

@@ -16,7 +16,7 @@ use crate::progress::LogLevel;
 use crate::solver::pairs::assembly::{Assembled, Assembly};
 use crate::solver::problem::Problem;
 use crate::surface::vector::{largest, minus, Vector};
-use crate::surface::{areas, find, Depth, Master, Opposite, Partner, Placed, Rule, Slave, Tree};
+use crate::surface::{areas, find, Depth, Master, Opposite, Partner, Placed, Rigid, Rule, Slave, Tree};
 
 /// Bytes of a slave node during a find: its rows, twice, and its partner.
 const PER_NODE: usize = 4096;
@@ -26,7 +26,7 @@ struct Found {
     kept: Vec<u32>,
     met: Vec<Option<Met>>,
     adjusted: Option<Vec<f64>>,
-    tied: Option<Vec<Option<Tied>>>,
+    tied: Option<(Vec<Option<Tied>>, Option<Rigid>)>,
     areas: Vec<f64>,
     held: (usize, f64),
     /// Contact rows or equality rows of a tie.
@@ -134,21 +134,20 @@ impl<'a> Sides<'a> {
         let areas: Vec<f64> = pair.nodes.iter().map(|&node| all[node as usize]).collect();
         let assembly = Assembly::of(self.model, pair)?;
         if pair.is_tied {
-            let points = match &pair.tied {
-                Some(points) => points.clone(),
-                None => assembly.points(self, &self.partners(&mut kept)?),
+            let rigid = if let Opposite::Rigid(now, _) = self.master { Some(*now) } else { None };
+            let tied = match &pair.tied {
+                Some(tied) => tied.clone(),
+                None => (assembly.points(self, &self.partners(&mut kept)?), rigid),
             };
-            let (rows, met) = assembly.ties(self, &points)?;
-            return Ok(Found {
-                kept,
-                met,
-                adjusted: None,
-                tied: Some(points),
-                areas,
-                held: (0, 0.0),
-                rows,
-                tangential: Assembled::default(),
-            });
+            let master = match (self.master, &tied.1) {
+                (Opposite::Rigid(now, _), Some(found)) => Opposite::Rigid(found, now),
+                (master, _) => master,
+            };
+            let (rows, met) = assembly.ties(self, &master, &tied.0)?;
+            // points are found by the first find that is on
+            let tied = (scalars.is_on || pair.tied.is_some()).then_some(tied);
+            let (adjusted, held, tangential) = (None, (0, 0.0), Assembled::default());
+            return Ok(Found { kept, met, adjusted, tied, areas, held, rows, tangential });
         }
         let partners = self.partners(&mut kept)?;
         let adjusted = pair.adjusted.clone().unwrap_or_else(|| self.adjusted(&partners));
@@ -161,7 +160,8 @@ impl<'a> Sides<'a> {
             .zip(&areas)
             .map(|(c, area)| if *c > 0.0 { c / area } else { 0.0 })
             .collect();
-        Ok(Found { kept, met, adjusted: Some(adjusted), tied: None, areas, held, rows, tangential })
+        let adjusted = (scalars.is_on || pair.adjusted.is_some()).then_some(adjusted);
+        Ok(Found { kept, met, adjusted, tied: None, areas, held, rows, tangential })
     }
 
     /// Gaps of the first find that count as 0.

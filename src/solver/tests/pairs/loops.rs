@@ -96,7 +96,10 @@ fn newtons_method_of_two_sliding_blocks_ends_within_twenty_iterations() {
         assert!(mean > 0.04, "p/E = {mean}");
         assert!(counts.iter().all(|count| *count <= 20), "{friction}: {counts:?}");
         // master nodes sink in between slave nodes
-        assert!(facts.deepest_of_master.is_some_and(|deepest| deepest.1 < 1e-3) && facts.between_walls == 0, "{facts:?}");
+        assert!(
+            facts.deepest_of_master.is_some_and(|deepest| deepest.1 < 1e-3) && facts.between_walls == 0,
+            "{facts:?}"
+        );
         // an edge of a face is 0.19, kinks have some hundredths of a radian
         assert!(facts.deepest.is_none_or(|deepest| deepest.1 < 0.02 * 0.19 * 0.1), "{facts:?}");
         if friction > 0.0 {

@@ -118,3 +118,30 @@ fn a_tie_carries_tension_and_shear() {
     );
     assert!(problem.pair_field(made, PairField::Force).unwrap().iter().sum::<f64>() < 0.0, "tension");
 }
+
+#[test]
+fn a_foot_tied_to_a_rigid_plane_over_a_gap_follows_it() {
+    use crate::solver::RigidShape;
+    let upper = block(&[0.0, 0.0], &[2.0, 1.0], &[4, 2], |x| x[1] == 1.0);
+    let mut problem = Problem::new();
+    let body = upper.give(&mut problem);
+    let slave = upper.surface(&mut problem, body, false);
+    let plane = |x: f64, y: f64| [x, y - 0.05, 0.0, 1.0];
+    let master = problem.surface_rigid(2, RigidShape::Plane, &plane(0.0, 0.0)).unwrap();
+    let made = problem.pair_add(slave, master, PairMethod::NodeToFace, true, 0.1).unwrap().0;
+    // while it is off it demands nothing, and finds no points
+    problem.pair_set(made, "on", &[0.0]).unwrap();
+    problem.surface_move(master, &plane(7.0, 0.0), 2).unwrap();
+    problem.pairs_find().unwrap();
+    assert!((0..10).all(|row| problem.model.equalities.is_empty_row(row)));
+    problem.pair_set(made, "on", &[1.0]).unwrap();
+    problem.surface_move(master, &plane(0.0, 0.0), 2).unwrap();
+    problem.pairs_find().unwrap();
+    problem.surface_move(master, &plane(0.01, 0.02), 2).unwrap();
+    problem.pairs_find().unwrap();
+    problem.solve().unwrap();
+    let u = upper.spread(problem.displacement(body).unwrap());
+    for node in upper.side(false) {
+        assert!((u[2 * node] - 0.01).abs() < 1e-12 && (u[2 * node + 1] - 0.02).abs() < 1e-12);
+    }
+}

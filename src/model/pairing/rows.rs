@@ -1,21 +1,9 @@
 //! The rows that a find has made take the place of those before.
 
-use crate::constraints::RowSet;
 use crate::error::Result;
 use crate::model::contents::SolvedModel;
 use crate::model::host::HostModel;
-
-/// Rows of all pairs, over the unknowns of all bodies.
-#[derive(Default)]
-pub struct PairRows {
-    pub contact: RowSet,
-    pub equalities: RowSet,
-    /// With s_old as right-hand sides.
-    pub tangential: RowSet,
-    /// Coefficient and bound of the nodes with friction.
-    pub coefficient: Vec<f64>,
-    pub bound: Vec<f64>,
-}
+use crate::model::pairs::PairRows;
 
 impl HostModel {
     /// Replaces the rows of pairs. Numbers of rows stay, and so do the forces from which the next solve starts.
