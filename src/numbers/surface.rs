@@ -22,3 +22,6 @@ pub const ALONG: f64 = 0.1;
 pub const ANGLE: f64 = 100.0;
 /// Overlap of a row that has lost all its unknowns, in parts of the surface's extent, that is rounding: a held node on a rigid face has 1e-17.
 pub const OVERLAP: f64 = 1e-9;
+/// Distance times curvature, relative to the square of the height, up to which a node has one nearest point on a face: 4 x 1/32 of the height
+/// is the least eigenvalue of X_a.X_b.
+pub const CONVEX: f64 = 0.03125;

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::numbers::surface::{NEAR, NO_AREA};
+use crate::numbers::surface::{CONVEX, NEAR, NO_AREA};
 use crate::surface::domain::Domain;
 use crate::surface::shape::{Functions, Kind, Parent, Shape, MOST};
 use crate::surface::vector::{cross, dot, length, minus, plus, times, unit, Vector, E_Z, ZERO};
@@ -135,6 +135,9 @@ impl Patch {
                 best = (end, at);
             }
         };
+        if matches!(self.shape, Shape::Line2 | Shape::Tri3) || self.is_convex_from(x) {
+            return self.descent(x, domain, self.shape.centre());
+        }
         if self.shape.is_quadratic() {
             let samples = samples(self.shape);
             let mut at = [f64::INFINITY; SAMPLES * SAMPLES];
@@ -147,14 +150,30 @@ impl Patch {
             return best.0;
         }
         from(self.shape.centre());
-        if self.shape == Shape::Quad4 {
-            let corner = |k: usize| far(minus(self.x[k], x));
-            from(
-                self.shape
-                    .place((1..4).fold(0, |least, k| if corner(k) < corner(least) { k } else { least })),
-            );
-        }
+        let corner = |k: usize| far(minus(self.x[k], x));
+        let nearest = (1..4).fold(0, |least, k| if corner(k) < corner(least) { k } else { least });
+        from(self.shape.place(nearest));
         best.0
+    }
+
+    /// One minimum at most: (X - x).X_ab is below X_a.X_b on the whole face, as on the parallelogram of its corners. |X - x| is at most its
+    /// value at the centre and the longest edge; |X_ab| four times bulge and twist; the least eigenvalue of X_a.X_b height^2 / 8.
+    fn is_convex_from(&self, x: Vector) -> bool {
+        let (corners, kind) = (self.shape.corners().len(), self.shape.kind());
+        let edge = |k: usize| minus(self.x[(k + 1) % corners], self.x[k]);
+        let longest = (0..corners).map(|k| length(edge(k))).fold(0.0, f64::max);
+        let (area, twist) = match kind {
+            Kind::Line => (longest * longest, ZERO),
+            Kind::Triangle => (length(cross(edge(0), edge(1))), ZERO),
+            Kind::Square => (
+                length(cross(edge(0), edge(1))).min(length(cross(edge(2), edge(3)))),
+                plus(edge(0), 1.0, edge(2)),
+            ),
+        };
+        let curvature = length(self.sagitta()) + 0.5 * length(twist);
+        let centre = (0..corners).fold(ZERO, |sum, k| plus(sum, 1.0 / corners as f64, self.x[k]));
+        let far = length(minus(x, centre)) + longest;
+        far * curvature * longest * longest <= CONVEX * area * area
     }
 
     /// Newton's method for `|X(r) - x|^2 / 2 -> min` over the domain. Each step goes to the minimum of the quadratic model over the whole

@@ -83,7 +83,7 @@ fn the_nearest_point_of_every_shape_is_that_of_brute_force() {
         let worst = run(2, RANDOM / EACH, |part| {
             let random = scattered((part + 1) * 40 * EACH).split_off(part * 40 * EACH);
             let gap = |w: &[f64]| {
-                let patch = bent(shape, 0.1, w);
+                let patch = bent(shape, if part % 2 == 0 { 0.1 } else { 0.02 }, w);
                 let x = std::array::from_fn(|i| if i < dim { 4.0 * w[36 + i] } else { 0.0 });
                 let found = patch.nearest(x, &Domain::grown(shape, |_| 0.0));
                 length(minus(patch.point(found), x)) - brute(&patch, x)
