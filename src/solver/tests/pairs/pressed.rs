@@ -3,9 +3,9 @@
 use super::*;
 use crate::solver::{Outcome, PairField, RigidShape, RowKind};
 
-/// Nodes meet nodes: the pressure is constant, in the plane and in space.
+/// In the plane and in space; the lower block is held at its foot and bulges, so that the pressure is constant on average.
 #[test]
-fn blocks_with_equal_meshes_have_a_constant_pressure() {
+fn the_pressure_between_two_blocks_has_the_load_as_its_resultant() {
     const P: f64 = 1e-3;
     for dim in [2, 3] {
         let (size, steps) = (&[2.0, 1.0, 0.5][3 - dim..], &[4, 3, 2][3 - dim..]);
@@ -31,7 +31,6 @@ fn blocks_with_equal_meshes_have_a_constant_pressure() {
         assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
         let pressure = problem.pair_field(made, PairField::Pressure).unwrap();
         let facts = problem.pair_info(made).unwrap();
-        // the lower block is held at its foot and bulges: the pressure is constant on average, its resultant is the load
         assert!((facts.force[dim - 1] - P * whole).abs() < 1e-9 * P, "{facts:?}");
         assert!(
             (facts.closed_area - whole).abs() < 1e-12 && facts.closed == facts.rows && facts.without == 0

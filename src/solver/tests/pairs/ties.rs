@@ -22,7 +22,7 @@ fn tied(dim: usize) -> (Problem, [Block; 2], [usize; 2], [usize; 2], usize) {
 #[test]
 fn ties_over_a_gap_leave_the_motions_of_a_floating_pair_free() {
     for dim in [2, 3] {
-        let (mut problem, blocks, bodies, surfaces, made) = tied(dim);
+        let (mut problem, blocks, _, surfaces, made) = tied(dim);
         problem.pairs_find().unwrap();
         let rows = &problem.model.equalities;
         assert_eq!(rows.len(), dim * blocks[1].side(false).len());
@@ -43,15 +43,7 @@ fn ties_over_a_gap_leave_the_motions_of_a_floating_pair_free() {
                 assert!(work.abs() <= 1e-13 * rows.matrix.row_dot_abs(row, &u), "{work:e}");
             }
         }
-        // a pull at both ends: what hangs together is not strained by the gap
-        let pull = |block: &Block, top: bool, force: f64| {
-            let (side, mut f) = (block.side(top), vec![0.0; block.dof.len()]);
-            let each = force / side.len() as f64;
-            side.iter().for_each(|node| f[dim * node + dim - 1] = each);
-            // its line of action through the middle of both blocks
-            f
-        };
-        let _ = (&pull, bodies);
+        // the gap of 0.3 is kept, not closed
         let report = problem.solve().unwrap();
         assert_eq!(report.outcome, Outcome::Solved);
         assert!(problem.displacements().unwrap().iter().all(|u| u.abs() < 1e-12), "nothing is strained");
