@@ -2,10 +2,12 @@
 
 mod factors;
 
+pub use factors::{entries, Entries};
+
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::constraints::friction::factors::{check_factors, entries, ratio};
+use crate::constraints::friction::factors::{check_factors, ratio};
 use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::error::{Error, Result, INDEX};
 use crate::linalg::vector::{first_non_finite, NOISE};
@@ -147,10 +149,6 @@ impl Friction {
         }
         let mut rows = RowSet::default();
         rows.add(RowKind::Tangential, input.rows, offsets).map_err(|error| of_node(error, input.dim))?;
-        for (k, row) in normal.iter().enumerate() {
-            let own = (k * input.dim..(k + 1) * input.dim).map(|i| entries(&rows, i));
-            check_factors(own.chain(row.map(|row| entries(contact, row))).collect(), k)?;
-        }
         drop_noise(&mut rows, &normal, contact);
         if count > 0 {
             self.dim = input.dim;
@@ -165,6 +163,22 @@ impl Friction {
         };
         self.nodes.extend(normal.into_iter().enumerate().map(node));
         Ok(first)
+    }
+
+    /// Refuses nodes whose rows have different factors; `contact`: the entries of a contact row, over the same unknowns as those of `input`.
+    pub fn check_factors(
+        input: FrictionInput,
+        contact: impl Fn(usize) -> Entries,
+        offsets: &[usize],
+    ) -> Result<()> {
+        let mut rows = RowSet::default();
+        rows.add(RowKind::Tangential, input.rows, offsets)
+            .map_err(|error| of_node(error, input.dim.max(1)))?;
+        for (k, row) in input.normal.iter().enumerate() {
+            let own = (k * input.dim..(k + 1) * input.dim).map(|i| entries(&rows, i));
+            check_factors(own.chain(usize::try_from(*row).map(&contact)).collect(), k)?;
+        }
+        Ok(())
     }
 
     /// Contact rows of new nodes; each may belong to one node only.

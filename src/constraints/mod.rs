@@ -12,6 +12,7 @@ mod entries;
 mod friction;
 mod grouping;
 mod kind;
+mod owned;
 mod replaced;
 mod tabled;
 mod taken;
@@ -19,10 +20,11 @@ mod touched;
 
 pub use decoupling::{Decoupling, UnitRows};
 pub use dof_table::{DofTable, DofTableInput};
-pub use friction::{Friction, FrictionInput, FrictionNode};
+pub use friction::{entries, Entries, Friction, FrictionInput, FrictionNode};
 pub use grouping::Grouping;
 pub use kind::RowKind;
-pub use tabled::{Resolved, Table};
+pub use owned::OwnedRows;
+pub use tabled::{Table, TabledRows};
 pub use taken::Taken;
 pub use touched::Touched;
 
@@ -120,7 +122,7 @@ impl RowSet {
             if entries.iter().any(|entry| entry.1 != 0.0)
                 && entries.iter().all(|entry| entry.1.abs() <= noise)
             {
-                taken.get_or_insert_default().entries.push(self.len() + i);
+                taken.get_or_insert_default().entries.push(i);
             }
             entries.retain(|entry| entry.1.abs() > noise);
             added.push_row(entries);
@@ -131,16 +133,22 @@ impl RowSet {
 
     /// Appends rows over the same unknowns; returns the number of the first.
     pub fn append(&mut self, more: &Self, offsets: &[usize]) -> Result<usize> {
+        let first = self.append_rows(more);
+        Arc::make_mut(&mut self.matrix).cols = offsets.last().copied().unwrap_or(0);
+        Ok(first)
+    }
+
+    fn append_rows(&mut self, more: &Self) -> usize {
         let first = self.len();
         let matrix = Arc::make_mut(&mut self.matrix);
-        (0..more.len()).for_each(|i| matrix.push_row(more.matrix.row(i)));
-        matrix.cols = offsets.last().copied().unwrap_or(0);
+        matrix.append(&more.matrix);
+        matrix.cols = matrix.cols.max(more.matrix.cols);
         self.rhs.extend(&more.rhs);
         Arc::make_mut(&mut self.compliance).extend(&*more.compliance);
         if !more.cancelled().is_empty() {
-            self.taken.get_or_insert_default().entries.extend(more.cancelled());
+            self.taken.get_or_insert_default().entries.extend(more.cancelled().iter().map(|row| first + row));
         }
-        Ok(first)
+        first
     }
 
     /// Sets right-hand sides. True if some row changes between rows that may close and rows that never close.

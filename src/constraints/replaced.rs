@@ -8,9 +8,31 @@ use crate::linalg::Csr;
 use crate::platform::memory::reserved;
 
 impl RowSet {
+    /// The rows of all sets, one after the other.
+    pub fn joined(mut sets: Vec<Self>) -> Self {
+        if sets.len() == 1 {
+            return sets.swap_remove(0);
+        }
+        let count = |of: &dyn Fn(&Self) -> usize| sets.iter().map(of).sum::<usize>();
+        let (rows, entries) = (count(&|set| set.len()), count(&|set| set.matrix.col.len()));
+        let mut all = Self {
+            matrix: Arc::new(Csr::with_room(0, rows, entries)),
+            rhs: Vec::with_capacity(rows),
+            compliance: Arc::new(Vec::with_capacity(rows)),
+            taken: None,
+        };
+        for set in &sets {
+            all.append_rows(set);
+        }
+        all
+    }
+
     /// A copy in which `first` stands in place of as many first rows; `cols`: all unknowns. `what` names it in errors.
     pub fn with_first(&self, first: &Self, cols: usize, what: &str) -> Result<Self> {
         let (rows, from) = (self.len().max(first.len()), first.len());
+        if rows == from {
+            return first.copied(what);
+        }
         let rest = from..rows;
         let mut matrix = Csr {
             cols,

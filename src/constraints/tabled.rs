@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::constraints::dof_table::DofTable;
-use crate::constraints::{RowKind, RowsInput};
+use crate::constraints::{Entries, OwnedRows, RowKind, RowsInput};
 use crate::error::{Error, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Csr;
@@ -17,20 +17,12 @@ pub struct Table {
 
 /// Rows of one kind as the host gave them.
 #[derive(Debug, Clone)]
-struct TabledRows {
+pub struct TabledRows {
     /// Their numbers, ascending.
     number: Vec<usize>,
     /// Entries over the unknowns of the table.
     matrix: Csr,
     /// c, h or s_old, length.
-    rhs: Vec<f64>,
-}
-
-/// Rows over the unknowns of K.
-pub struct Resolved {
-    ptr: Vec<usize>,
-    dof: Vec<i64>,
-    val: Vec<f64>,
     rhs: Vec<f64>,
 }
 
@@ -40,24 +32,17 @@ impl Default for TabledRows {
     }
 }
 
-impl Default for Resolved {
-    fn default() -> Self {
-        Self { ptr: vec![0], dof: Vec::new(), val: Vec::new(), rhs: Vec::new() }
-    }
-}
-
-impl Resolved {
-    pub fn input(&self) -> RowsInput<'_> {
-        RowsInput { ptr: &self.ptr, body: None, dof: &self.dof, val: &self.val, rhs: Some(&self.rhs) }
-    }
-
-    pub fn push(&mut self, entries: impl Iterator<Item = (usize, f64)>, rhs: f64) {
-        for (place, v) in entries {
-            self.dof.push(place as i64);
-            self.val.push(v);
-        }
-        self.ptr.push(self.dof.len());
+impl TabledRows {
+    pub fn push(&mut self, number: usize, entries: impl Iterator<Item = (usize, f64)>, rhs: f64) {
+        self.number.push(number);
+        self.matrix.push_row(entries);
         self.rhs.push(rhs);
+    }
+
+    /// Rows of a later number, which are counted from `first` in `more`.
+    pub fn append(&mut self, more: &Self, first: usize) {
+        (0..more.number.len())
+            .for_each(|k| self.push(first + more.number[k], more.matrix.row(k), more.rhs[k]));
     }
 }
 
@@ -77,13 +62,13 @@ impl Table {
     }
 
     /// Rows whose entries name unknowns of the table.
-    pub fn resolved(&self, rows: RowsInput<'_>) -> Result<Resolved> {
+    pub fn resolved(&self, rows: RowsInput<'_>) -> Result<OwnedRows> {
         let n = self.dofs.len();
         if let Some(at) = first_non_finite(rows.val) {
             let row = rows.ptr.partition_point(|&p| p <= at) - 1;
             return Err(Error::argument("val", "the entry is not a finite number").row(row).entry(at));
         }
-        let mut resolved = Resolved::default();
+        let mut resolved = OwnedRows::default();
         for row in 0..rows.ptr.len() - 1 {
             let mut entries = Vec::new();
             for at in rows.ptr[row]..rows.ptr[row + 1] {
@@ -98,7 +83,7 @@ impl Table {
         Ok(resolved)
     }
 
-    fn resolve(&self, row: &[(usize, f64)], rhs: f64, to: &mut Resolved) {
+    fn resolve(&self, row: &[(usize, f64)], rhs: f64, to: &mut OwnedRows) {
         let entries =
             row.iter().flat_map(|&(i, b)| self.dofs.terms.row(i).map(move |(place, t)| (place, b * t)));
         to.push(entries, self.dofs.right_hand_side(row.iter().copied(), rhs));
@@ -108,11 +93,18 @@ impl Table {
     pub fn keep(&mut self, kind: RowKind, first: usize, rows: RowsInput<'_>) {
         let own = &mut self.rows[kind as usize];
         for row in 0..rows.ptr.len() - 1 {
-            let range = rows.ptr[row]..rows.ptr[row + 1];
-            own.number.push(first + row);
-            own.matrix.push_row(range.map(|at| (rows.dof[at] as usize, rows.val[at])));
-            own.rhs.push(rows.rhs.map_or(0.0, |rhs| rhs[row]));
+            let entries = (rows.ptr[row]..rows.ptr[row + 1]).map(|at| (rows.dof[at] as usize, rows.val[at]));
+            own.push(first + row, entries, rows.rhs.map_or(0.0, |rhs| rhs[row]));
         }
+    }
+
+    /// `first` stands in place of the rows of a kind before row `end`.
+    pub fn replace_before(&mut self, kind: RowKind, end: usize, mut first: TabledRows) {
+        let own = &mut self.rows[kind as usize];
+        for k in own.number.partition_point(|row| *row < end)..own.number.len() {
+            first.push(own.number[k], own.matrix.row(k), own.rhs[k]);
+        }
+        *own = first;
     }
 
     /// Forgets the rows of a kind from `first` on.
@@ -134,8 +126,14 @@ impl Table {
         self.rows[kind as usize].number.binary_search(&number).is_ok()
     }
 
+    /// Row `number` as given; no entries if it is no row of the table.
+    pub fn entries(&self, kind: RowKind, number: usize) -> Entries {
+        let own = &self.rows[kind as usize];
+        own.number.binary_search(&number).map_or(Vec::new(), |k| own.matrix.row(k).collect())
+    }
+
     /// Row `number` over the unknowns of K, if it is a row of the table.
-    pub fn row(&self, kind: RowKind, number: usize, to: &mut Resolved) -> bool {
+    pub fn row(&self, kind: RowKind, number: usize, to: &mut OwnedRows) -> bool {
         let own = &self.rows[kind as usize];
         let Ok(k) = own.number.binary_search(&number) else { return false };
         self.resolve(&own.matrix.row(k).collect::<Vec<_>>(), own.rhs[k], to);

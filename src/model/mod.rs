@@ -23,7 +23,7 @@ pub use accuracy::{Accuracy, Lengths};
 pub use contents::{BodyRevisions, Counted, GivenBody, GivenBy, Revisions, Sizes, SolvedModel};
 pub use host::HostModel;
 pub use numbering::NAMED;
-pub use pairs::{Geometry, Met, Pair, PairMethod, PairRows, Pairs, Tied};
+pub use pairs::{Geometry, Met, Pair, PairMethod, PairRows, Pairs, SurfaceSizes, Tied};
 pub use parts::{Joint, Part, Parts};
 pub use row_sets::{contradiction, kind_and_row, proof_of_rows, PER_ENTRY};
 pub use settings::{options, OptionInfo, OptionValue, Settings};

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::constraints::{FrictionInput, Resolved, RowKind, RowsInput};
+use crate::constraints::{entries, Friction, FrictionInput, OwnedRows, RowKind, RowsInput};
 use crate::error::{Error, Proof, Result};
 use crate::model::contents::{Counted, SolvedModel};
 use crate::model::host::HostModel;
+use crate::model::tables::WITH_NAMED;
 use crate::platform::memory::{self, Headroom};
 
 /// Bytes per entry of B and H: the host's rows, the scaled rows and the rows by bodies, with room for growth.
@@ -15,7 +16,7 @@ impl HostModel {
     pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
         let given = rows;
         let (resolved, places) = self.named(given)?;
-        let rows = resolved.as_ref().map_or(given, Resolved::input);
+        let rows = resolved.as_ref().map_or(given, OwnedRows::input);
         let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
         let (all, end, is_named) = ([0, usize::MAX], self.sizes().dofs, self.has_others && places.is_some());
         let offsets = std::mem::take(&mut self.offsets);
@@ -48,11 +49,11 @@ impl HostModel {
     }
 
     pub fn clear_rows(&mut self, kind: RowKind) {
-        let own = self.rows_of_pairs(kind);
         if kind != RowKind::Tangential {
+            let own = self.rows_of_pairs(kind);
             self.rows_mut(kind).keep_first(own);
+            self.forget_tabled(kind, own);
         }
-        self.forget_tabled(kind, own);
         if kind != RowKind::Equality {
             self.clear_friction();
         }
@@ -62,11 +63,20 @@ impl HostModel {
     pub fn add_friction(&mut self, input: FrictionInput) -> Result<usize> {
         let given = input.rows;
         let (resolved, places) = self.named(given)?;
-        let rows = resolved.as_ref().map_or(given, Resolved::input);
+        let rows = resolved.as_ref().map_or(given, OwnedRows::input);
         let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
         let (all, end, is_named) = ([0, usize::MAX], self.sizes().dofs, self.has_others && places.is_some());
         let SolvedModel { friction, contact, offsets, .. } = &mut self.contents;
         let of = if is_named { &all[..] } else { &offsets[..] };
+        // before the table takes entries from the rows, which then tell nothing of factors
+        match self.table.as_ref().filter(|_| resolved.is_some()) {
+            Some(table) => {
+                Friction::check_factors(input, |row| table.entries(RowKind::Inequality, row), &WITH_NAMED)?;
+            }
+            None => {
+                Friction::check_factors(FrictionInput { rows, ..input }, |row| entries(contact, row), of)?;
+            }
+        }
         let first = friction.add(FrictionInput { rows, ..input }, contact, of)?;
         if is_named {
             friction.rows.name(first * friction.dim);
@@ -120,8 +130,8 @@ impl HostModel {
 
     pub fn clear_friction(&mut self) {
         let own = self.rows_of_pairs(RowKind::Tangential);
+        self.forget_tabled(RowKind::Tangential, own * self.friction.dim);
         self.friction.keep_first(own);
-        self.forget_tabled(RowKind::Tangential, own);
         self.revisions.rows += 1;
     }
 

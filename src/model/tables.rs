@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::constraints::{
-    DofTable, DofTableInput, Friction, FrictionInput, Resolved, RowKind, RowSet, RowsInput, Table,
+    DofTable, DofTableInput, Friction, FrictionInput, OwnedRows, RowKind, RowSet, RowsInput, Table,
 };
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::first_non_finite;
@@ -18,6 +18,7 @@ impl HostModel {
             false => Some(number).filter(|number| *number < self.sizes().dofs),
         };
         let dofs = DofTable::resolve(input, place)?;
+        self.pairs.check_table(dofs.len())?;
         let old = self.table.as_deref();
         let has_other_terms = old.is_some_and(|old| old.dofs.terms != dofs.terms);
         let table = Table::new(dofs, old)?;
@@ -84,7 +85,7 @@ impl HostModel {
     }
 
     /// Rows without bodies over the unknowns of all bodies: whole rows if there is a table, otherwise places if there are numbers.
-    pub(super) fn named(&self, rows: RowsInput<'_>) -> Result<(Option<Resolved>, Option<Vec<i64>>)> {
+    pub(super) fn named(&self, rows: RowsInput<'_>) -> Result<(Option<OwnedRows>, Option<Vec<i64>>)> {
         match (rows.body, &self.table) {
             (Some(_), _) => Ok((None, None)),
             (None, Some(table)) => Ok((Some(table.resolved(rows)?), None)),
@@ -182,11 +183,11 @@ impl HostModel {
 }
 
 /// Rows may name unknowns of other ranks.
-const WITH_NAMED: [usize; 2] = [0, usize::MAX];
+pub(super) const WITH_NAMED: [usize; 2] = [0, usize::MAX];
 
 /// All rows of a kind, those of the table by another one.
-fn resolved(table: &Table, rows: &RowSet, kind: RowKind) -> Resolved {
-    let mut all = Resolved::default();
+fn resolved(table: &Table, rows: &RowSet, kind: RowKind) -> OwnedRows {
+    let mut all = OwnedRows::default();
     for row in 0..rows.len() {
         if !table.row(kind, row, &mut all) {
             all.push(rows.matrix.row(row), rows.rhs[row]);

@@ -25,3 +25,22 @@ pub const OVERLAP: f64 = 1e-9;
 /// Distance times curvature, relative to the square of the height, up to which a node has one nearest point on a face: 4 x 1/32 of the height
 /// is the least eigenvalue of X_a.X_b.
 pub const CONVEX: f64 = 0.03125;
+/// Cosine between the normals of a slave's face and a master's face below which the latter is edge-on: seen along the slave's normal its
+/// gap changes a hundred times faster than the position.
+pub const EDGE_ON: f64 = 0.01;
+/// Step of Newton's method, in parts of the parent, after which its error, the square, is rounding.
+pub const SQUARED: f64 = 1e-8;
+/// Area of a segment, in parts of the slave's face, or of the product of two functions, in parts of that of one of them, up to which it is
+/// rounding.
+pub const SPECK: f64 = 1e-15;
+/// Condition of the mass matrix of hat functions on the covered part of a face up to which dual functions are taken: on specks of 1e-3 of
+/// the face their rows lose three digits.
+pub const SLIVER: f64 = 1e6;
+/// Share of a corner in the covered part of a face, relative to the largest one, up to which it has none: dual functions would give it a
+/// gap that is extrapolated over a hundred times the covered width, hat functions the row of the other corners again.
+pub const FAR: f64 = 0.01;
+/// Bulge or twist of a face, in parts of its longest edge, up to which it is an affine image of its parent.
+pub const AFFINE: f64 = 1e-12;
+/// Largest entry of a row up to which it moves nothing; the direction that the row measures has the length 1. Nodes at the end of an edge
+/// have it where only the other end is held.
+pub const IDLE: f64 = 1e-9;

@@ -7,7 +7,7 @@ use crate::constraints::{DofTableInput, FrictionInput, RowKind, RowsInput};
 use crate::error::Result;
 use crate::linalg::Borrowed;
 use crate::mesh::ElementStorage;
-use crate::model::{PairMethod, Settings, Sizes};
+use crate::model::{PairMethod, Settings, Sizes, SurfaceSizes};
 use crate::platform::memory::Headroom;
 use crate::solver::Problem;
 use crate::surface::{RigidShape, Shape};
@@ -177,7 +177,7 @@ input! {
     fn pair_set(&mut self, pair: usize, name: &str, value: &[f64]) -> Result<()>;
 
     /// The next load step begins at the present positions; nodes keep no faces.
-    fn pairs_commit(&mut self);
+    fn pairs_commit(&mut self) -> Result<()>;
 
     reads:
 
@@ -241,6 +241,13 @@ input! {
     /// Checks that `count` nodes exist and have `dim` tangential rows each.
     #[doc(hidden)]
     fn check_friction_nodes(&self, first: usize, count: usize, dim: usize) -> Result<()>;
+
+    /// Dimensions, nodes and faces of a surface, and how many numbers describe a rigid one.
+    fn surface_sizes(&self, surface: usize) -> Result<SurfaceSizes>;
+
+    /// Checks that pairs have a number of this name, and that `n` numbers may give it.
+    #[doc(hidden)]
+    fn check_pair_number(&self, pair: usize, name: &str, n: usize) -> Result<()>;
 
     /// Reserves memory for further rows: existing rows may be copied while their arrays grow.
     #[doc(hidden)]

@@ -32,6 +32,7 @@ pub use crate::linalg::Borrowed;
 pub use crate::mesh::ElementStorage;
 pub use crate::model::{
     options, Method, OptionInfo, OptionValue, PairMethod, PaperStep1, PaperUnits, Settings, Sizes,
+    SurfaceSizes,
 };
 pub use crate::progress::{Listener, LogLevel, LogListener, PhaseReport, Progress, Reply};
 pub use crate::qp::StepKind;

@@ -30,12 +30,16 @@ impl Problem {
         let what = format!("{name}{kind} is {:.1e}, the limit {:.1e}", entry.figure, certificate.limit);
         let mut error = Error::new(Kind::State, what).value(entry.figure).limit(certificate.limit);
         error.place.rank = entry.place.map(|_| entry.rank).filter(|_| self.is_answered_together());
-        Some(match (entry.place, *of) {
+        let named = match (entry.place, *of) {
             (None, _) => error,
             (Some(body), "body") => error.body(body),
             (Some(node), "node") => error.node(node),
             (Some(row), _) => error.row(row),
-        })
+        };
+        if let Some((pair, node)) = self.worst_pair(certificate) {
+            return Some(named.pair(pair).node(node));
+        }
+        Some(named)
     }
 
     /// As `answer`, for results of one body: its group of bodies must have an answer.

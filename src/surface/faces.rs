@@ -83,7 +83,15 @@ impl Faces {
     }
 
     /// Adds faces of one shape, `node` counting from 0, at positions x; returns the number of the first. An error changes nothing.
+    #[cfg(test)]
     pub fn add(&mut self, shape: Shape, node: &[i64], x: &[Vector]) -> Result<usize> {
+        let first = self.len();
+        *self = self.with(shape, node, x)?;
+        Ok(first)
+    }
+
+    /// These faces and further ones of one shape, `node` counting from 0, at positions x.
+    pub fn with(&self, shape: Shape, node: &[i64], x: &[Vector]) -> Result<Self> {
         if shape.dim() != self.dim {
             let what = format!("{} is no face in {} dimensions", shape.name(), self.dim);
             return Err(Error::argument("shape", what));
@@ -104,8 +112,7 @@ impl Faces {
             })?;
         }
         all.connect()?;
-        *self = all;
-        Ok(first)
+        Ok(all)
     }
 
     /// A copy with room for further faces.

@@ -10,6 +10,7 @@
 //! | `tree` | faces in boxes, nearest first |
 //! | `foot`, `find` | the foot of a node on a face, and the partner of every node |
 //! | `frame`, `rows` | directions that turn with the master; rows, gaps and slips |
+//! | `mortar` | weighted gaps: segments of slave and master, dual functions, their rows |
 
 mod areas;
 mod domain;
@@ -17,6 +18,8 @@ mod faces;
 mod find;
 mod foot;
 mod frame;
+mod meeting;
+mod mortar;
 mod patch;
 mod rigid;
 mod rows;
@@ -28,8 +31,10 @@ pub use areas::{areas, Depth};
 pub use faces::{Faces, NONE};
 pub use find::{between_walls, find, Master, Partner, Rule};
 pub use foot::{Foot, Node, Placed};
+pub use meeting::Meeting;
+pub use mortar::Mortar;
 pub use rigid::{Rigid, RigidFoot, RigidShape};
-pub use rows::{rows, tie, Opposite, Row, Rows, Slave};
+pub use rows::{Entry, Opposite, Rows, Slave};
 pub use shape::Shape;
 pub use tree::Tree;
 

@@ -111,6 +111,15 @@ impl Patch {
         sum
     }
 
+    /// An affine image of its parent, but for bulge and twist of this part of its size.
+    pub fn is_affine(&self, part: f64) -> bool {
+        let twist = match self.shape.kind() {
+            Kind::Square => minus(plus(self.x[0], 1.0, self.x[2]), plus(self.x[1], 1.0, self.x[3])),
+            _ => ZERO,
+        };
+        length(self.sagitta()) + length(twist) <= part * self.size()
+    }
+
     fn taylor(&self, r: Parent) -> Taylor {
         let (f, x) = (self.shape.at(r), self.nodes());
         let none = self.shape.kind() == Kind::Line;

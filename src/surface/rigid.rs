@@ -14,6 +14,21 @@ pub enum RigidShape {
     Cylinder,
 }
 
+impl RigidShape {
+    /// How many numbers describe the shape in `dim` dimensions.
+    pub fn numbers(self, dim: usize) -> Result<usize> {
+        if !(2..=3).contains(&dim) || (dim == 2 && self == Self::Cylinder) {
+            let what = "a plane or a circle has 2 dimensions; a plane, a sphere or a cylinder 3";
+            return Err(Error::argument("dim", what).value(dim as f64));
+        }
+        Ok(match self {
+            Self::Plane => 2 * dim,
+            Self::Sphere => dim + 1,
+            Self::Cylinder => 2 * dim + 1,
+        })
+    }
+}
+
 /// An obstacle at its present place. With a negative radius the body is outside of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rigid {
@@ -36,15 +51,7 @@ pub struct RigidFoot {
 impl Rigid {
     /// `data`: a point, then as [`RigidShape`] says.
     pub fn new(dim: usize, shape: RigidShape, data: &[f64]) -> Result<Self> {
-        if !(2..=3).contains(&dim) || (dim == 2 && shape == RigidShape::Cylinder) {
-            let what = "a plane or a circle has 2 dimensions; a plane, a sphere or a cylinder 3";
-            return Err(Error::argument("dim", what).value(dim as f64));
-        }
-        let numbers = match shape {
-            RigidShape::Plane => 2 * dim,
-            RigidShape::Sphere => dim + 1,
-            RigidShape::Cylinder => 2 * dim + 1,
-        };
+        let numbers = shape.numbers(dim)?;
         if data.len() != numbers {
             let what = format!("this obstacle has {numbers} numbers, not {}", data.len());
             return Err(Error::argument("data", what).value(data.len() as f64).limit(numbers as f64));
@@ -80,17 +87,21 @@ impl Rigid {
         Some(RigidFoot { y: plus(x, -gap, normal), normal, gap })
     }
 
-    /// A direction of the obstacle as it was when the obstacle was at `begin`: it has turned without spin.
-    pub fn direction_at(&self, begin: &Self, v: Vector) -> Vector {
+    /// A direction of the obstacle when the obstacle is at `other`: it turns without spin.
+    pub fn direction_at(&self, other: &Self, v: Vector) -> Vector {
         match self.shape {
             RigidShape::Sphere => v,
-            _ => turned(v, self.direction, begin.direction),
+            _ if self.direction == other.direction => v,
+            _ => turned(v, self.direction, other.direction),
         }
     }
 
-    /// A point of the obstacle where it was when the obstacle was at `begin`.
-    pub fn point_at(&self, begin: &Self, y: Vector) -> Vector {
-        plus(begin.point, 1.0, self.direction_at(begin, minus(y, self.point)))
+    /// A point of the obstacle when the obstacle is at `other`.
+    pub fn point_at(&self, other: &Self, y: Vector) -> Vector {
+        if self == other {
+            return y;
+        }
+        plus(other.point, 1.0, self.direction_at(other, minus(y, self.point)))
     }
 }
 

@@ -1,13 +1,13 @@
-//! Rows between a slave node and its partner, over nodes of surfaces and directions.
+//! Rows between a slave node and what it has met, over nodes of surfaces and directions.
 //!
-//! With w = x - y, y the foot, and directions n, t that turn with the master's face, the rows are the gradients of
+//! With w = x - y between the slave and its master, and directions d that turn with one of their faces, the rows are the gradients of the
+//! openings `d.w` at fixed material points:
 //!
 //! ```text
 //! g = n.w      b = -dg/du      s = t.w      T = ds/du
 //! ```
 //!
-//! at fixed material points. Both are 0 for each motion that slave and master share, whatever the gap: dw turns with the motion, and so do
-//! n and t.
+//! They are 0 for each motion that slave and master share, whatever the gap: dw turns with the motion, and so do n and t.
 
 use crate::numbers::surface::ALONG;
 use crate::surface::faces::Faces;
@@ -15,34 +15,26 @@ use crate::surface::find::Partner;
 use crate::surface::foot::Placed;
 use crate::surface::frame::Frame;
 use crate::surface::rigid::Rigid;
-use crate::surface::shape::{Shape, MOST};
+use crate::surface::shape::Shape;
 use crate::surface::vector::{
     across, any_across, cross, dot, length, minus, plus, times, unit, Vector, E_Z, ZERO,
 };
 
-/// A row: its vector at the slave node and at nodes of the master; no unit.
-#[derive(Debug, Clone, Copy)]
-pub struct Row {
-    pub slave: Vector,
-    nodes: [u32; MOST],
-    values: [Vector; MOST],
-    count: usize,
-}
+/// A node of a surface with the gradients of the three openings there, no unit.
+pub type Entry = (u32, [Vector; 3]);
 
-/// All rows of a slave node.
-#[derive(Debug, Clone, Copy)]
+/// The openings of a slave node along two tangents and the master's outward normal, and their gradients.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Rows {
-    /// From slave to master: the outward normal of the slave.
-    pub normal: Vector,
-    pub tangents: [Vector; 2],
-    /// g, length
-    pub gap: f64,
-    /// `b u <= g`
-    pub contact: Row,
-    /// T: one row in the plane, two in space.
-    pub tangential: [Row; 2],
-    /// `s(x_begin) - s(x)`, length: the slip of the step is `T u - s_old`.
-    pub s_old: [f64; 2],
+    /// Two tangents and the normal; by mortar their means over the faces of the node. In the plane the second tangent does not count.
+    pub directions: [Vector; 3],
+    /// `d.w`, length: now, and at the beginning of the step. Of the normal it is the gap.
+    pub opening: [f64; 3],
+    pub before: [f64; 3],
+    pub slave: Vec<Entry>,
+    pub master: Vec<Entry>,
+    /// Between the direction of the contact and the master's normal, radian.
+    pub angle: f64,
 }
 
 /// The positions of both surfaces at two times.
@@ -54,26 +46,11 @@ pub struct Slave<'a> {
     pub begin: &'a [Vector],
 }
 
-/// The master of the rows, now and at the beginning of the step.
+/// The master of the rows, now and at the beginning of the step; a rigid one also as it was when its points were found.
 #[derive(Clone, Copy)]
 pub enum Opposite<'a> {
     Faces(Placed<'a>, &'a [Vector]),
-    Rigid(&'a Rigid, &'a Rigid),
-}
-
-impl Row {
-    fn of(slave: Vector, nodes: &[u32], value: impl Fn(usize) -> Vector) -> Self {
-        let mut row = Self { slave, nodes: [0; MOST], values: [ZERO; MOST], count: nodes.len() };
-        for (k, node) in nodes.iter().enumerate() {
-            (row.nodes[k], row.values[k]) = (*node, value(k));
-        }
-        row
-    }
-
-    /// Nodes of the master and their vectors.
-    pub fn master(&self) -> impl Iterator<Item = (u32, Vector)> + '_ {
-        self.nodes.iter().copied().zip(self.values).take(self.count)
-    }
+    Rigid { found: &'a Rigid, now: &'a Rigid, begin: &'a Rigid },
 }
 
 /// A material point of the master: where it is, and a frame that turns with it.
@@ -103,17 +80,17 @@ impl Point<'_> {
         (0..3).fold(ZERO, |sum, i| plus(sum, dot(here[i], d), there[i]))
     }
 
-    /// The gradient of `d.w`, d carried by the master; `turns`: w has a part across d.
-    fn row(&self, d: Vector, w: Vector, turns: bool) -> Row {
-        match self {
-            Self::Rigid(..) => Row::of(d, &[], |_| ZERO),
-            Self::Face(frame, nodes) => {
-                let turning = frame.turning(d, w);
-                Row::of(d, nodes, |k| {
-                    plus(times(-frame.functions.n[k], d), if turns { 1.0 } else { 0.0 }, turning(k))
-                })
-            }
-        }
+    /// The gradients of `d.w` at the nodes of the master, d carried by it; `turns`: w has a part across d.
+    fn gradients(&self, d: [Vector; 3], w: Vector, turns: [bool; 3]) -> Vec<Entry> {
+        let Self::Face(frame, nodes) = self else { return Vec::new() };
+        let turning = d.map(|d| frame.turning(d, w));
+        let at = |k: usize| {
+            let of = |i: usize| {
+                plus(times(-frame.functions.n[k], d[i]), if turns[i] { 1.0 } else { 0.0 }, turning[i](k))
+            };
+            std::array::from_fn(of)
+        };
+        nodes.iter().enumerate().map(|(k, node)| (*node, at(k))).collect()
     }
 }
 
@@ -128,11 +105,14 @@ impl Opposite<'_> {
                 };
                 Some([at(placed.x), at(begin)])
             }
-            (Self::Rigid(now, begin), Partner::Rigid(foot)) => {
+            (Self::Rigid { found, now, begin }, Partner::Rigid(foot)) => {
                 let e_1 = any_across(foot.normal);
                 let e = [e_1, cross(foot.normal, e_1), foot.normal];
-                let before = e.map(|e| now.direction_at(begin, e));
-                Some([Point::Rigid(foot.y, e), Point::Rigid(now.point_at(begin, foot.y), before)])
+                Some(
+                    [now, begin].map(|at| {
+                        Point::Rigid(found.point_at(at, foot.y), e.map(|e| found.direction_at(at, e)))
+                    }),
+                )
             }
             _ => None,
         }
@@ -160,25 +140,42 @@ pub fn rows(slave: &Slave, master: &Opposite, node: u32, partner: &Partner) -> O
             [here, here.map(|t| now.carried(t, &begin))]
         }
     };
-    let contact = negative(now.row(normal, w, partner.is_askew()));
-    let tangential = tangents[0].map(|t| now.row(t, w, true));
-    let s_old = [0, 1].map(|a| dot(tangents[1][a], before) - dot(tangents[0][a], from));
-    Some(Rows { normal: times(-1.0, normal), tangents: tangents[0], gap, contact, tangential, s_old })
+    let directions = [tangents[0][0], tangents[0][1], normal];
+    Some(Rows {
+        directions,
+        opening: [dot(directions[0], from), dot(directions[1], from), gap],
+        before: [dot(tangents[1][0], before), dot(tangents[1][1], before), dot(normal_before, before)],
+        slave: vec![(node, directions)],
+        master: now.gradients(directions, w, [true, true, partner.is_askew()]),
+        angle: 0.0,
+    })
 }
 
-fn negative(row: Row) -> Row {
-    Row { slave: times(-1.0, row.slave), values: row.values.map(|v| times(-1.0, v)), ..row }
+/// The rows of a tie, along the vectors of the master's frame at the foot.
+pub fn tie(slave: &Slave, master: &Opposite, node: u32, partner: &Partner) -> Option<Rows> {
+    let [now, begin] = master.points(partner)?;
+    let w = minus(slave.x[node as usize], now.y());
+    let before = minus(slave.begin[node as usize], begin.y());
+    let (directions, of_begin) = (now.vectors(), begin.vectors());
+    Some(Rows {
+        directions,
+        opening: directions.map(|e| dot(e, w)),
+        before: of_begin.map(|e| dot(e, before)),
+        slave: vec![(node, directions)],
+        master: now.gradients(directions, w, [true; 3]),
+        angle: 0.0,
+    })
 }
 
 /// t_1 along e across the master's normal n, and t_2 = (-n) x t_1.
-fn across_from(e: Vector, n: Vector) -> [Vector; 2] {
+pub fn across_from(e: Vector, n: Vector) -> [Vector; 2] {
     let t = unit(across(e, n)).unwrap_or_else(|| any_across(n));
     [t, cross(t, n)]
 }
 
 impl Slave<'_> {
     /// The node to which an edge of the first face leads that is not along n; none for nodes in no face.
-    fn edge_across(&self, node: u32, n: Vector) -> Option<u32> {
+    pub fn edge_across(&self, node: u32, n: Vector) -> Option<u32> {
         let (face, k) = self.faces.first_face(node)?;
         let nodes = self.faces.nodes_of(face);
         let [to, other] = neighbours(self.faces.shape(face), k).map(|k| nodes[k]);
@@ -194,14 +191,4 @@ fn neighbours(shape: Shape, k: usize) -> [usize; 2] {
         None => [(k + 1) % corners, (k + corners - 1) % corners],
         Some(edge) => [(edge + 1) % corners, (edge + 2) % corners],
     }
-}
-
-/// The rows of a tie, along the vectors of the master's frame at the foot, and the components of w there. A rigid master is given as it was
-/// when the foot was found, and as it is now.
-pub fn tie(slave: &Slave, master: &Opposite, node: u32, partner: &Partner) -> Option<([Row; 3], [f64; 3])> {
-    let [now, moved] = master.points(partner)?;
-    let point = if matches!(master, Opposite::Rigid(..)) { moved } else { now };
-    let w = minus(slave.x[node as usize], point.y());
-    let e = point.vectors();
-    Some((e.map(|e| point.row(e, w, true)), e.map(|e| dot(e, w))))
 }

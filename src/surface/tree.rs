@@ -47,6 +47,11 @@ impl Tree {
     pub fn near(&self, x: Vector) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.0.nearest_neighbor_iter_with_distance_2(x).map(|(found, square)| (found.face as usize, square))
     }
+
+    /// Faces with boxes that meet this one, in no order.
+    pub fn within(&self, low: Vector, high: Vector) -> impl Iterator<Item = usize> + '_ {
+        self.0.locate_in_envelope_intersecting(AABB::from_corners(low, high)).map(|found| found.face as usize)
+    }
 }
 
 /// Corners and sagitta; a face at a rim may extend further by the part `RIM` in each of two directions, of its corners and of its sagitta.

@@ -319,6 +319,31 @@ fn a_row_that_never_closes_is_turned_on_with_what_is_left_of_its_gap() {
     }
 }
 
+/// On an arm of 1e4 the row along the arm is as short as that of the normal is long: what the table makes of rows says nothing of their factors.
+#[test]
+fn a_node_on_the_long_arm_of_a_pilot_has_friction() {
+    for (factor, ends) in [(1.0, true), (2e3, false)] {
+        let mut problem = Problem::new();
+        problem.add_body(3).unwrap();
+        let k = SparseInput { ptr: &[0, 1, 2, 3], col: &[0, 1, 2], val: &[2.0; 3], storage: Storage::Lower };
+        problem.set_stiffness(0, k).unwrap();
+        let arm = [6e3, 8e3 + 1e-2];
+        let terms = ([0, 2, 1, 2], [1.0, -arm[1], 1.0, arm[0]]);
+        let table = DofTableInput {
+            number: &[0, 1, 2, -1, -1],
+            ptr: Some(&[0, 0, 0, 0, 2, 4]),
+            term: &terms.0,
+            coefficient: &terms.1,
+            constant: None,
+        };
+        problem.set_dof_table(table).unwrap();
+        add(&mut problem, RowKind::Inequality, &[(3, 0.6), (4, 0.8)], 0.0).unwrap();
+        let made = add(&mut problem, RowKind::Tangential, &[(3, -0.8 * factor), (4, 0.6 * factor)], 0.0);
+        assert_eq!(made.is_ok(), ends, "{made:?}");
+        problem.set_dof_table(table).unwrap();
+    }
+}
+
 /// c - b g is rounding of its terms.
 #[test]
 fn a_held_node_on_a_held_face_has_a_row_that_holds_up_to_rounding() {

@@ -7,8 +7,13 @@ use crate::numbers::rows::FACTORS;
 
 pub type Entries = Vec<(usize, f64)>;
 
+/// Of row i, none if there is no such row.
 pub fn entries(rows: &RowSet, i: usize) -> Entries {
-    rows.matrix.row(i).collect()
+    if i < rows.len() {
+        rows.matrix.row(i).collect()
+    } else {
+        Vec::new()
+    }
 }
 
 fn product(a: &Entries, b: &Entries) -> f64 {

@@ -58,7 +58,8 @@ fn different_factors_are_refused_where_no_support_can_have_shortened_a_row() {
         let (ptr, dof, val) = rows(tangents);
         let rows = RowsInput { ptr: &ptr, body: None, dof: &dof, val: &val, rhs: None };
         let input = FrictionInput { dim: tangents.len(), normal: &[0], rows, coefficient: None, bound: None };
-        Friction::default().add(input, &contact, &[0, 4]).map(|_| ()).map_err(|error| error.place.value)
+        let refused = Friction::check_factors(input, |row| entries(&contact, row), &[0, 4]);
+        refused.map_err(|error| error.place.value)
     };
     let [n, t] = [2000.0, 1.0].map(|l| [[(0, l * c), (1, l * s)], [(0, -l * s), (1, l * c)]]);
     let end = ends(&n[0], &[&t[1]]);
@@ -74,6 +75,17 @@ fn different_factors_are_refused_where_no_support_can_have_shortened_a_row() {
     let [a, b, x] = turned.map(|row| [(1, row[1] + 0.1 * row[2]), (2, row[2] - 0.1 * row[1])]);
     assert!(ends(&a, &[&b, &x]).is_ok() && ends(&x, &[&a, &b]).is_ok());
     assert!(ends(&[(0, 1.0)], &[&[(1, 9e-4)]]).is_ok());
+}
+
+/// Of nodes that come one after the other.
+#[test]
+fn a_row_whose_entries_cancel_is_noticed_by_its_own_number() {
+    let (contact, mut friction) = (contact(), Friction::default());
+    friction.add(input(&[0], &[0.5], &[1.0]), &contact, &[0, 4]).unwrap();
+    let rows = RowsInput { ptr: &[0, 3], body: None, dof: &[1, 1, 1], val: &[0.1, 0.2, -0.3], rhs: None };
+    let second = FrictionInput { dim: 1, normal: &[1], rows, coefficient: None, bound: None };
+    friction.add(second, &contact, &[0, 4]).unwrap();
+    assert_eq!(friction.rows.cancelled(), [1]);
 }
 
 #[test]

@@ -53,6 +53,14 @@ impl Csr {
         self.ptr.push(self.col.len());
     }
 
+    /// Appends the rows of another matrix.
+    pub fn append(&mut self, more: &Self) {
+        let start = self.col.len();
+        self.ptr.extend(more.ptr[1..].iter().map(|end| start + end));
+        self.col.extend_from_slice(&more.col);
+        self.val.extend_from_slice(&more.val);
+    }
+
     /// Drops all rows but the first `count`.
     pub fn truncate(&mut self, count: usize) {
         self.ptr.truncate(count + 1);

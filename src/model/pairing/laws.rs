@@ -15,23 +15,8 @@ const OF_PAIR: [&str; 6] = ["adjust", "on", "angle", "depth", "thickness", "axis
 impl HostModel {
     /// `value`: one number, or one for each node of the slave surface.
     pub fn pair_set(&mut self, pair: usize, name: &str, value: &[f64]) -> Result<()> {
-        let of = self.pairs.pair(pair)?;
-        let surface_nodes = self.pairs.surfaces[of.slave].len();
-        let refused = |what: String| Err(Error::argument("value", what).pair(pair));
-        let (is_by_node, known) = (BY_NODE.contains(&name), OF_PAIR.contains(&name));
-        if !is_by_node && !known {
-            let what =
-                format!("a pair has no number {name}: it has {}, {}", BY_NODE.join(", "), OF_PAIR.join(", "));
-            return Err(Error::argument("name", what).pair(pair));
-        }
-        if value.len() != 1 && !(is_by_node && value.len() == surface_nodes) {
-            let each = if is_by_node {
-                format!(", or {surface_nodes}, one for each node of the slave")
-            } else {
-                String::new()
-            };
-            return refused(format!("{name} is one number{each}, not {}", value.len()));
-        }
+        self.check_pair_number(pair, name, value.len())?;
+        let is_by_node = BY_NODE.contains(&name);
         let is_allowed = |v: f64| match name {
             "offset" => v.is_finite(),
             "on" | "axisymmetric" => v == 0.0 || v == 1.0,
@@ -57,6 +42,25 @@ impl HostModel {
             _ => scalars.axisymmetric = value[0] == 1.0,
         }
         Ok(())
+    }
+
+    /// Checks that pairs have this number, and that it may be given as `n` numbers.
+    pub fn check_pair_number(&self, pair: usize, name: &str, n: usize) -> Result<()> {
+        let of = self.pairs.pair(pair)?;
+        let nodes = self.pairs.surfaces[of.slave].len();
+        let (is_by_node, known) = (BY_NODE.contains(&name), OF_PAIR.contains(&name));
+        if !is_by_node && !known {
+            let what =
+                format!("a pair has no number {name}: it has {}, {}", BY_NODE.join(", "), OF_PAIR.join(", "));
+            return Err(Error::argument("name", what).pair(pair));
+        }
+        if n == 1 || is_by_node && n == nodes {
+            return Ok(());
+        }
+        let each =
+            if is_by_node { format!(", or {nodes}, one for each node of the slave") } else { String::new() };
+        let error = Error::argument("n", format!("{name} is one number{each}, not {n}")).pair(pair);
+        Err(error.value(n as f64).limit(1.0))
     }
 
     fn set_by_node(&mut self, pair: usize, name: &str, value: &[f64]) -> Result<()> {

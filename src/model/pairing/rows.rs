@@ -1,5 +1,8 @@
 //! The rows that a find has made take the place of those before.
 
+use std::sync::Arc;
+
+use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::model::contents::SolvedModel;
 use crate::model::host::HostModel;
@@ -11,10 +14,11 @@ impl HostModel {
         const WHAT: &str = "rows of pairs";
         let end = self.sizes().dofs;
         let SolvedModel { contact, equalities, friction, .. } = &**self;
-        let contact = contact.with_first(&rows.contact, end, WHAT)?;
-        let equalities = equalities.with_first(&rows.equalities, end, WHAT)?;
+        let [of_contact, of_equalities, of_tangential] = &rows.sets;
+        let contact = contact.with_first(of_contact, end, WHAT)?;
+        let equalities = equalities.with_first(of_equalities, end, WHAT)?;
         let mut all = friction.copied(WHAT)?;
-        all.rows = all.rows.with_first(&rows.tangential, end, WHAT)?;
+        all.rows = all.rows.with_first(of_tangential, end, WHAT)?;
         for (node, (coefficient, bound)) in all.nodes.iter_mut().zip(rows.coefficient.iter().zip(&rows.bound))
         {
             (node.coefficient, node.bound) = (*coefficient, *bound);
@@ -24,6 +28,11 @@ impl HostModel {
             && self.friction.same_but_law(&self.contact, &all, &contact));
         (self.contact, self.equalities, self.friction) = (contact, equalities, all);
         self.revisions.laws += u64::from(is_new);
+        if let Some(table) = self.table.as_mut().map(Arc::make_mut) {
+            for (kind, tabled) in RowKind::ALL.into_iter().zip(rows.tabled) {
+                table.replace_before(kind, rows.sets[kind as usize].len(), tabled);
+            }
+        }
         Ok(())
     }
 }

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
-use crate::model::pairs::copied;
+use crate::model::pairs::{copied, WHAT};
+use crate::platform::memory::reserved;
 use crate::surface::vector::Vector;
 use crate::surface::{Faces, Rigid};
 
@@ -14,11 +15,23 @@ pub enum Geometry {
     Rigid { now: Rigid, begin: Rigid },
 }
 
+/// What the arrays of a surface hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SurfaceSizes {
+    pub dim: usize,
+    /// 0 for a rigid surface.
+    pub nodes: usize,
+    pub faces: usize,
+    /// Numbers that describe a rigid surface; 0 for one with nodes.
+    pub data: usize,
+}
+
 /// The unknowns of the nodes, one per direction; below 0: held.
 #[derive(Debug)]
 pub struct Unknowns {
-    /// Without a body they are those of all bodies, or the host's numbers.
+    /// Without a body they are those of all bodies, or the host's numbers, or those of its table.
     pub body: Option<usize>,
+    pub is_tabled: bool,
     pub dof: Vec<i64>,
 }
 
@@ -46,6 +59,13 @@ impl Geometry {
         }
     }
 
+    pub fn unknowns(&self) -> Option<&Unknowns> {
+        match self {
+            Self::Nodes { unknowns, .. } => unknowns.as_deref(),
+            Self::Rigid { .. } => None,
+        }
+    }
+
     /// The nodes of its faces, ascending; of a cloud all nodes.
     pub fn slave_nodes(&self) -> Result<Vec<u32>> {
         let refused = |what: &str| Err(Error::argument("slave", what));
@@ -58,15 +78,34 @@ impl Geometry {
         if faces.nodes == 0 {
             return refused("this surface has no nodes");
         }
-        let nodes: Vec<u32> =
-            if faces.len() > 0 { faces.used().collect() } else { (0..faces.nodes as u32).collect() };
-        copied(nodes.into_iter())
+        let mut nodes = reserved(faces.nodes, WHAT)?;
+        match faces.len() {
+            0 => nodes.extend(0..faces.nodes as u32),
+            _ => nodes.extend(faces.used()),
+        }
+        Ok(nodes)
     }
 
-    /// The step begins at the present positions.
-    pub fn begin_here(&mut self) {
+    pub fn sizes(&self) -> SurfaceSizes {
+        let (faces, data) = match self {
+            Self::Nodes { faces, .. } => (faces.len(), 0),
+            Self::Rigid { now, .. } => (0, now.shape.numbers(now.dim).unwrap_or(0)),
+        };
+        SurfaceSizes { dim: self.dim(), nodes: self.len(), faces, data }
+    }
+
+    /// A copy of the present positions; empty for a rigid surface.
+    pub fn positions(&self) -> Result<Arc<Vec<Vector>>> {
         match self {
-            Self::Nodes { x, begin, .. } => *begin = Arc::new(x.clone()),
+            Self::Nodes { x, .. } => Ok(Arc::new(copied(x.iter().copied())?)),
+            Self::Rigid { .. } => Ok(Arc::default()),
+        }
+    }
+
+    /// The step begins at the present positions, of which this is a copy.
+    pub fn begin_at(&mut self, positions: Arc<Vec<Vector>>) {
+        match self {
+            Self::Nodes { begin, .. } => *begin = positions,
             Self::Rigid { now, begin } => *begin = *now,
         }
     }

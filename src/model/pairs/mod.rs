@@ -3,14 +3,16 @@
 mod geometry;
 mod laws;
 
-pub use geometry::{Geometry, Unknowns};
+pub use geometry::{Geometry, SurfaceSizes, Unknowns};
 pub use laws::Laws;
 
-use crate::constraints::{RowKind, RowSet};
-use crate::error::{Error, Result};
+use std::sync::Arc;
+
+use crate::constraints::{RowKind, RowSet, TabledRows};
+use crate::error::{Error, Result, INDEX};
 use crate::platform::memory::reserved;
 use crate::surface::vector::Vector;
-use crate::surface::{Partner, Rigid};
+use crate::surface::{Meeting, Rigid};
 
 pub(super) const WHAT: &str = "a pair of surfaces";
 
@@ -19,6 +21,8 @@ pub(super) const WHAT: &str = "a pair of surfaces";
 pub enum PairMethod {
     /// One row between each slave node and the point of the master nearest to it.
     NodeToFace,
+    /// One row for each slave node, of the gap weighted over its faces.
+    Mortar,
 }
 
 /// All surfaces and pairs. Their rows come before those of the host.
@@ -31,15 +35,24 @@ pub struct Pairs {
 /// What a slave node has met in the last find.
 #[derive(Debug, Clone, Copy)]
 pub struct Met {
-    /// From slave to master.
+    /// From slave to master; by mortar, as the tangents, a mean over faces, which may be shorter than 1.
     pub normal: Vector,
     pub tangents: [Vector; 2],
-    /// Between the points at the positions of the find, length.
+    /// Moments about the origin of unit forces along the normal and the tangents on the slave, length.
+    pub moments: [Vector; 3],
+    /// At the positions of the find, length.
     pub gap: f64,
+    /// Between the normal and that of the master, radian.
+    pub angle: f64,
 }
 
-/// The material point of a tie, and the components of x - y in the master's frame when it was found, length.
-pub type Tied = (Partner, [f64; 3]);
+/// The material points of a tie, the openings of its nodes when they were found, length, and a rigid master at that time.
+#[derive(Debug)]
+pub struct Tied {
+    pub meeting: Meeting,
+    pub then: Vec<Option<[f64; 3]>>,
+    pub rigid: Option<Rigid>,
+}
 
 /// Two surfaces that may meet. Row k belongs to slave node `nodes[k]`.
 #[derive(Debug, Clone)]
@@ -61,21 +74,21 @@ pub struct Pair {
     pub met: Vec<Option<Met>>,
     /// Gaps of the first find that count as 0, length; none before it.
     pub adjusted: Option<Vec<f64>>,
-    /// The points of a tie, and its rigid master at that time; none before the first find.
-    pub tied: Option<(Vec<Option<Tied>>, Option<Rigid>)>,
-    /// Areas of its nodes at the last find, length^2.
+    /// None before the first find of a tie that is on.
+    pub tied: Option<Arc<Tied>>,
+    /// Areas of its nodes at the last find, by mortar of their covered parts, length^2.
     pub areas: Vec<f64>,
     /// Rows of the last find whose unknowns are all held, and the deepest overlap there, length.
     pub held: (usize, f64),
 }
 
-/// Rows of all pairs, over the unknowns of all bodies.
+/// Rows of all pairs.
 #[derive(Default)]
 pub struct PairRows {
-    pub contact: RowSet,
-    pub equalities: RowSet,
-    /// With s_old as right-hand sides.
-    pub tangential: RowSet,
+    /// Over the unknowns of all bodies, by their kind; tangential rows with s_old as right-hand sides.
+    pub sets: [RowSet; 3],
+    /// Those that follow the table of unknowns.
+    pub tabled: [TabledRows; 3],
     /// Coefficient and bound of the nodes with friction.
     pub coefficient: Vec<f64>,
     pub bound: Vec<f64>,
@@ -110,16 +123,28 @@ impl Pairs {
         counts(self) == counts(other) && friction(self) == friction(other)
     }
 
-    /// Bytes of a copy, which shares faces and unknowns.
+    /// Bytes of a copy, which shares faces, unknowns and points of ties.
     pub fn bytes(&self) -> usize {
         let nodes: usize = self.surfaces.iter().map(Geometry::len).sum();
         let rows: usize = self.pairs.iter().map(|pair| pair.nodes.len()).sum();
-        let each = size_of::<Option<Met>>() + size_of::<Option<Tied>>() + 8 * size_of::<f64>();
+        let each = size_of::<Option<Met>>() + 8 * size_of::<f64>();
         nodes * size_of::<Vector>() + rows * each
     }
 
     pub fn dim(&self, pair: &Pair) -> usize {
         self.surfaces[pair.slave].dim()
+    }
+
+    /// Surfaces name no more than `n` unknowns of the table.
+    pub fn check_table(&self, n: usize) -> Result<()> {
+        for (number, surface) in self.surfaces.iter().enumerate() {
+            let Some(of) = surface.unknowns().filter(|of| of.is_tabled) else { continue };
+            if let Some(at) = of.dof.iter().position(|dof| *dof >= n as i64) {
+                let what = format!("surface {number} names unknown {INDEX} of the table, which has {n} now");
+                return Err(Error::argument("n", what).node(at / surface.dim()).index(of.dof[at]));
+            }
+        }
+        Ok(())
     }
 
     pub fn pair(&self, pair: usize) -> Result<&Pair> {

@@ -1,184 +1,189 @@
-//! Rows over nodes of surfaces become rows over the unknowns of bodies.
+//! Rows over nodes of surfaces become rows over the unknowns that the surfaces name, and over those of bodies.
 
+use crate::constraints::{OwnedRows, RowKind, RowSet, Table};
 use crate::error::Result;
-use crate::model::{Geometry, HostModel, Met, Pair, Tied};
+use crate::model::{HostModel, Met, Pair, Tied};
+use crate::numbers::surface::IDLE;
 use crate::platform::threads::run;
 use crate::solver::pairs::Sides;
-use crate::surface::vector::{times, Vector, ZERO};
-use crate::surface::{rows, tie, Opposite, Partner, Row};
+use crate::surface::vector::{cross, plus, times, ZERO};
+use crate::surface::{Entry, Meeting, Opposite, Rows};
 
 /// Nodes of one task.
 const TOGETHER: usize = 512;
 
-/// Rows over the unknowns of all bodies.
+/// Rows of one kind over the unknowns of all bodies, and as they name unknowns of the table, if they do.
 #[derive(Default)]
-pub struct Assembled {
-    pub ptr: Vec<usize>,
-    pub dof: Vec<i64>,
-    pub val: Vec<f64>,
-    pub rhs: Vec<f64>,
-    /// 1/k, length / force; none if all rows are rigid.
-    pub compliance: Vec<f64>,
-    /// Rows of a node.
-    each: usize,
+pub struct Made {
+    pub set: RowSet,
+    pub given: Option<OwnedRows>,
 }
 
-impl Assembled {
-    fn new(each: usize) -> Self {
-        Self { ptr: vec![0], each, ..Self::default() }
-    }
-
-    pub fn len(&self) -> usize {
-        self.rhs.len()
-    }
-
-    pub fn is_empty(&self, row: usize) -> bool {
-        self.ptr[row] == self.ptr[row + 1]
-    }
-
-    /// The rows of node k slip by nothing.
-    pub fn clear(&mut self, k: usize) {
-        let own = k * self.each..(k + 1) * self.each;
-        self.rhs.get_mut(own).into_iter().flatten().for_each(|s| *s = 0.0);
-    }
-
-    fn empty(&mut self, rhs: f64) {
-        self.ptr.push(self.dof.len());
-        self.rhs.push(rhs);
-    }
-
-    fn append(&mut self, more: &Self) {
-        let start = self.dof.len();
-        self.ptr.extend(more.ptr[1..].iter().map(|end| start + end));
-        self.dof.extend(&more.dof);
-        self.val.extend(&more.val);
-        self.rhs.extend(&more.rhs);
-    }
+/// What a find has made of the nodes of a pair.
+#[derive(Default)]
+pub struct Contact {
+    pub contact: Made,
+    pub tangential: Made,
+    pub met: Vec<Option<Met>>,
+    /// Gaps that count as 0, length.
+    pub adjusted: Vec<f64>,
 }
 
 /// The unknowns of both surfaces.
-pub struct Assembly {
+pub struct Assembly<'a> {
     dim: usize,
     slave: Vec<i64>,
     /// None: a master without unknowns.
     master: Option<Vec<i64>>,
     has_friction: bool,
+    offsets: &'a [usize],
+    /// Whose unknowns these are, if not those of all bodies.
+    table: Option<&'a Table>,
 }
 
-impl Assembly {
-    pub fn of(model: &HostModel, pair: &Pair) -> Result<Self> {
-        let places = |surface: usize| match &model.pairs.surfaces[surface] {
-            Geometry::Nodes { unknowns: Some(unknowns), .. } => model.places_of_surface(unknowns).map(Some),
-            _ => Ok(None),
+impl<'a> Assembly<'a> {
+    pub fn of(model: &'a HostModel, pair: &Pair) -> Result<Self> {
+        let places = |surface: usize| {
+            model.pairs.surfaces[surface].unknowns().map(|of| model.places_of_surface(of)).transpose()
         };
         let (slave, master) = (places(pair.slave)?.unwrap_or_default(), places(pair.master)?);
-        Ok(Self { dim: model.pairs.dim(pair), slave, master, has_friction: pair.friction.is_some() })
+        let is_tabled = model.pairs.surfaces[pair.slave].unknowns().is_some_and(|of| of.is_tabled);
+        let table = model.table.as_deref().filter(|_| is_tabled);
+        let (dim, has_friction) = (model.pairs.dim(pair), pair.friction.is_some());
+        Ok(Self { dim, slave, master, has_friction, offsets: &model.offsets, table })
     }
 
-    fn push(&self, to: &mut Assembled, row: &Row, node: u32, rhs: f64) {
-        let mut add = |places: &[i64], node: u32, values: Vector| {
-            for i in 0..self.dim {
-                let place = places[self.dim * node as usize + i];
-                if place >= 0 && values[i] != 0.0 {
-                    to.dof.push(place);
-                    to.val.push(values[i]);
+    /// The gradient of opening i as a row; of the contact, `b = -dg/du`, its negative.
+    fn push(&self, to: &mut OwnedRows, rows: &Rows, i: usize, sign: f64, rhs: f64) {
+        to.begin(rhs);
+        let mut add = |places: &[i64], (node, of): &Entry| {
+            for axis in 0..self.dim {
+                let (place, value) = (places[self.dim * *node as usize + axis], of[i][axis]);
+                if place >= 0 && value != 0.0 {
+                    to.add(place as usize, sign * value);
                 }
             }
         };
-        add(&self.slave, node, row.slave);
+        rows.slave.iter().for_each(|entry| add(&self.slave, entry));
         if let Some(master) = &self.master {
-            row.master().for_each(|(node, values)| add(master, node, values));
+            rows.master.iter().for_each(|entry| add(master, entry));
         }
-        to.empty(rhs);
+        let moves =
+            |place: usize| self.table.is_none_or(|table| table.dofs.terms.row(place).next().is_some());
+        let last = to.len() - 1;
+        if to.row(last).all(|(place, value)| value.abs() <= IDLE || !moves(place)) {
+            to.retain_in_last(|place| !moves(place));
+        }
     }
 
-    /// Contact rows and tangential rows of all nodes, and what they have met.
-    pub fn contact(
-        &self,
-        sides: &Sides,
-        partners: &[Option<Partner>],
-        adjusted: &[f64],
-    ) -> Result<(Assembled, Assembled, Vec<Option<Met>>)> {
+    fn made(&self, kind: RowKind, rows: OwnedRows) -> Result<Made> {
+        let resolved = self.table.map(|table| table.resolved(rows.input())).transpose()?;
+        let mut set = RowSet::default();
+        set.add(kind, resolved.as_ref().unwrap_or(&rows).input(), self.offsets)?;
+        Ok(Made { set, given: resolved.map(|_| rows) })
+    }
+
+    /// Contact rows and tangential rows of all nodes, and what they have met; `adjusted`: gaps that count as 0, none before the first find.
+    pub fn contact(&self, sides: &Sides, meeting: &Meeting, adjusted: Option<&[f64]>) -> Result<Contact> {
         let (nodes, laws, tangents) = (&sides.pair.nodes, &sides.pair.laws, self.dim - 1);
         let of_task = run(sides.threads(), nodes.len().div_ceil(TOGETHER), |task| {
-            let (mut contact, mut tangential) = (Assembled::new(1), Assembled::new(tangents));
-            let mut met = Vec::new();
+            let (mut contact, mut tangential) = (OwnedRows::default(), OwnedRows::default());
+            let mut made = Contact::default();
             for k in TOGETHER * task..nodes.len().min(TOGETHER * (task + 1)) {
-                let of = partners[k].as_ref().and_then(|of| rows(&sides.slave, &sides.master, nodes[k], of));
+                let of = meeting.rows(&sides.slave, &sides.master, k, nodes[k]);
+                let gap = of.as_ref().map_or(f64::INFINITY, |of| of.opening[2] - laws.offset[k]);
+                let first = if gap.abs() <= laws.scalars.adjust { gap } else { 0.0 };
+                let adjusted = adjusted.map_or(first, |adjusted| adjusted[k]);
                 match &of {
-                    Some(of) => {
-                        self.push(&mut contact, &of.contact, nodes[k], of.gap - laws.offset[k] - adjusted[k])
-                    }
-                    None => contact.empty(f64::INFINITY),
+                    Some(of) => self.push(&mut contact, of, 2, -1.0, gap - adjusted),
+                    None => contact.begin(gap),
                 }
                 for a in (0..tangents).filter(|_| self.has_friction) {
                     match &of {
-                        Some(of) => self.push(&mut tangential, &of.tangential[a], nodes[k], of.s_old[a]),
-                        None => tangential.empty(0.0),
+                        Some(of) => self.push(&mut tangential, of, a, 1.0, of.before[a] - of.opening[a]),
+                        None => tangential.begin(0.0),
                     }
                 }
-                met.push(of.map(|of| Met { normal: of.normal, tangents: of.tangents, gap: of.gap }));
+                made.met.push(of.as_ref().map(|of| self.met(sides, of)));
+                made.adjusted.push(adjusted);
             }
-            Ok((contact, tangential, met))
+            made.contact = self.made(RowKind::Inequality, contact)?;
+            made.tangential = self.made(RowKind::Tangential, tangential)?;
+            Ok(made)
         })?;
-        let (mut contact, mut tangential, mut met) =
-            (Assembled::new(1), Assembled::new(tangents), Vec::new());
-        for (of_contact, of_tangential, of_met) in of_task {
-            contact.append(&of_contact);
-            tangential.append(&of_tangential);
-            met.extend(of_met);
-        }
-        Ok((contact, tangential, met))
+        Ok(Contact::joined(of_task))
     }
 
-    /// The points of ties.
-    pub fn points(&self, sides: &Sides, partners: &[Option<Partner>]) -> Vec<Option<Tied>> {
-        let point = |(node, partner): (&u32, &Option<Partner>)| {
-            let partner = (*partner)?;
-            Some((partner, tie(&sides.slave, &here(sides), *node, &partner)?.1))
+    fn met(&self, sides: &Sides, rows: &Rows) -> Met {
+        let moment = |i: usize| {
+            rows.slave
+                .iter()
+                .fold(ZERO, |sum, (node, of)| plus(sum, 1.0, cross(sides.slave.x[*node as usize], of[i])))
         };
-        sides.pair.nodes.iter().zip(partners).map(point).collect()
+        let [t, second, of_master] = rows.directions;
+        Met {
+            normal: times(-1.0, of_master),
+            tangents: [t, if self.dim == 3 { second } else { ZERO }],
+            moments: [times(-1.0, moment(2)), moment(0), moment(1)],
+            gap: rows.opening[2],
+            angle: rows.angle,
+        }
+    }
+
+    /// The points of a tie.
+    pub fn points(&self, sides: &Sides, meeting: Meeting) -> Tied {
+        let opening =
+            |(k, node): (usize, &u32)| Some(meeting.tie(&sides.slave, &sides.master, k, *node)?.opening);
+        let then = sides.pair.nodes.iter().enumerate().map(opening).collect();
+        let rigid = if let Opposite::Rigid { now, .. } = sides.master { Some(*now) } else { None };
+        Tied { meeting, then, rigid }
     }
 
     /// Equality rows along the normal and along the face, with what has opened since the points were found.
-    /// `master` as in [`tie`].
-    pub fn ties(
-        &self,
-        sides: &Sides,
-        master: &Opposite,
-        points: &[Option<Tied>],
-    ) -> Result<(Assembled, Vec<Option<Met>>)> {
-        let order = [2, 0, 1];
-        let (mut all, mut met) = (Assembled::new(self.dim), Vec::new());
-        for (node, point) in sides.pair.nodes.iter().zip(points) {
-            let point = point.as_ref().filter(|_| sides.pair.laws.scalars.is_on);
-            let of =
-                point.and_then(|(partner, then)| Some((tie(&sides.slave, master, *node, partner)?, then)));
-            for direction in &order[..self.dim] {
-                match &of {
-                    Some(((rows, now), then)) => {
-                        self.push(&mut all, &rows[*direction], *node, then[*direction] - now[*direction]);
-                        // a row that has lost all its unknowns demands nothing
-                        let row = all.len() - 1;
-                        all.rhs[row] = if all.is_empty(row) { 0.0 } else { all.rhs[row] };
-                    }
-                    None => all.empty(0.0),
-                }
+    pub fn ties(&self, sides: &Sides, tied: &Tied) -> Result<(Made, Vec<Option<Met>>)> {
+        let master = match (sides.master, &tied.rigid) {
+            (Opposite::Rigid { now, begin, .. }, Some(found)) => Opposite::Rigid { found, now, begin },
+            (master, _) => master,
+        };
+        let (mut all, mut met) = (OwnedRows::default(), Vec::new());
+        for (k, node) in sides.pair.nodes.iter().enumerate() {
+            let then = tied.then[k].filter(|_| sides.pair.laws.scalars.is_on);
+            let of = then.and_then(|then| Some((tied.meeting.tie(&sides.slave, &master, k, *node)?, then)));
+            for direction in [2, 0, 1].into_iter().take(self.dim) {
+                let Some((rows, then)) = &of else {
+                    all.begin(0.0);
+                    continue;
+                };
+                self.push(&mut all, rows, direction, 1.0, then[direction] - rows.opening[direction]);
             }
-            met.push(of.map(|((rows, now), _)| {
-                let [e_1, e_2, n] = rows.map(|row| row.slave);
-                let second = if self.dim == 3 { e_2 } else { ZERO };
-                Met { normal: times(-1.0, n), tangents: [e_1, second], gap: now[2] }
-            }));
+            met.push(of.as_ref().map(|(rows, _)| self.met(sides, rows)));
         }
-        Ok((all, met))
+        Ok((self.made(RowKind::Equality, all)?, met))
     }
 }
 
-/// A rigid master where it is.
-fn here<'a>(sides: &Sides<'a>) -> Opposite<'a> {
-    match sides.master {
-        Opposite::Rigid(now, _) => Opposite::Rigid(now, now),
-        master => master,
+impl Contact {
+    /// The parts, one after the other.
+    fn joined(parts: Vec<Self>) -> Self {
+        let (mut contact, mut tangential) = (Vec::new(), Vec::new());
+        let mut all = Self::default();
+        for part in parts {
+            contact.push(part.contact);
+            tangential.push(part.tangential);
+            all.met.extend(part.met);
+            all.adjusted.extend(part.adjusted);
+        }
+        Self { contact: Made::joined(contact), tangential: Made::joined(tangential), ..all }
+    }
+}
+
+impl Made {
+    fn joined(parts: Vec<Self>) -> Self {
+        let (sets, given): (Vec<_>, Vec<_>) = parts.into_iter().map(|part| (part.set, part.given)).unzip();
+        let given = given.into_iter().flatten().reduce(|mut all, more| {
+            all.append(&more);
+            all
+        });
+        Self { set: RowSet::joined(sets), given }
     }
 }

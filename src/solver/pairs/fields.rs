@@ -1,13 +1,13 @@
 //! Results of a pair at the nodes of its slave.
 
-use crate::certificate::FrictionState;
+use crate::certificate::{Certificate, FrictionState};
 use crate::constraints::RowKind;
 use crate::error::{Error, Result};
-use crate::model::{Geometry, Met, Pair};
+use crate::model::{Met, Pair};
 use crate::platform::memory::zeros;
 use crate::solve::{Answer, RowState};
 use crate::solver::problem::Problem;
-use crate::surface::vector::{plus, Vector, ZERO};
+use crate::surface::vector::{plus, times, unit, Vector, ZERO};
 
 /// What `pair_field` returns, with the numbers of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,21 +49,33 @@ pub(super) struct NodeResult {
     pub force: f64,
     /// Tangential force on the slave.
     pub shear: Vector,
+    /// On the slave, about the origin.
+    pub moment: Vector,
     pub gap: f64,
     pub slip: Vector,
     pub closed: f64,
 }
 
 impl Problem {
+    /// How many values `pair_field` returns.
+    pub fn pair_field_len(&self, pair: usize, field: PairField) -> Result<usize> {
+        let of = self.model.pairs.pair(pair)?;
+        let nodes = self.model.pairs.surfaces[of.slave].len();
+        Ok(if field.is_vector() { self.model.pairs.dim(of) * nodes } else { nodes })
+    }
+
+    /// Slave nodes of a pair that have a row, and the dimensions of its surfaces.
+    #[doc(hidden)]
+    pub fn pair_rows(&self, pair: usize) -> Result<(usize, usize)> {
+        let of = self.model.pairs.pair(pair)?;
+        Ok((of.nodes.len(), self.model.pairs.dim(of)))
+    }
+
     /// Values at the nodes of the slave surface as given, `values` with `1` or `dim` numbers for each; 0 where a node has no partner.
     pub fn pair_field(&self, pair: usize, field: PairField) -> Result<Vec<f64>> {
         let of = self.model.pairs.pair(pair)?;
-        let nodes = match &self.model.pairs.surfaces[of.slave] {
-            Geometry::Nodes { x, .. } => x.len(),
-            Geometry::Rigid { .. } => 0,
-        };
         let count = if field.is_vector() { self.model.pairs.dim(of) } else { 1 };
-        let mut values = zeros(count * nodes, "a field of a pair")?;
+        let mut values = zeros(self.pair_field_len(pair, field)?, "a field of a pair")?;
         let answer = field.needs_answer().then(|| self.answer()).transpose()?;
         for result in self.results_of(of, answer) {
             let per_area = if result.area > 0.0 { result.area.recip() } else { 0.0 };
@@ -74,7 +86,7 @@ impl Problem {
                 PairField::Gap => [result.gap, 0.0, 0.0],
                 PairField::Slip => result.slip,
                 PairField::Area => [result.area, 0.0, 0.0],
-                PairField::Normal => result.met.normal,
+                PairField::Normal => unit(result.met.normal).unwrap_or(ZERO),
                 PairField::Closed => [result.closed, 0.0, 0.0],
             };
             let node = result.node as usize;
@@ -98,28 +110,35 @@ impl Problem {
                 area,
                 force: 0.0,
                 shear: ZERO,
+                moment: ZERO,
                 gap: met.gap,
                 slip: ZERO,
                 closed: 0.0,
             };
             let Some(answer) = answer else { return Some(result) };
-            let along = |values: &[f64], first: usize, factor: f64| {
-                (0..dim - 1).fold(ZERO, |sum, a| plus(sum, factor * values[first + a], met.tangents[a]))
+            let sum = |of: &[Vector], values: &[f64], first: usize, factor: f64| {
+                (0..dim - 1).fold(ZERO, |sum, a| plus(sum, factor * values[first + a], of[a]))
             };
+            let along = |values: &[f64], first: usize, factor: f64| sum(&met.tangents, values, first, factor);
+            let moment = |values: &[f64], first: usize| sum(&met.moments[1..], values, first, -1.0);
             if pair.is_tied {
                 let first = pair.first + dim * k;
                 (result.force, result.shear) = (-answer.mu[first], along(&answer.mu, first + 1, -1.0));
+                result.moment = plus(moment(&answer.mu, first + 1), -result.force, met.moments[0]);
                 result.closed = 2.0;
                 return Some(result);
             }
             let row = pair.first + k;
             (result.force, result.gap) = (answer.lambda[row], answer.gaps[row]);
+            result.moment = times(-result.force, met.moments[0]);
             let is_closed = matches!(answer.states[row], RowState::Closed | RowState::Weak);
             result.closed = if is_closed { 1.0 } else { 0.0 };
             if let Some(friction) = pair.friction.map(|first| first + k) {
                 let first = (dim - 1) * friction;
                 result.shear = along(&answer.tangential, first, -1.0);
-                result.slip = along(&answer.slips, first, 1.0);
+                let directions = met.tangents.map(|t| unit(t).unwrap_or(ZERO));
+                result.slip = sum(&directions, &answer.slips, first, 1.0);
+                result.moment = plus(result.moment, 1.0, moment(&answer.tangential, first));
                 result.closed = match answer.friction[friction] {
                     FrictionState::Stick | FrictionState::Weak if is_closed => 2.0,
                     FrictionState::Slip if is_closed => 3.0,
@@ -141,5 +160,18 @@ impl Problem {
             }
         }
         error
+    }
+
+    /// Pair and slave node of the row, or of the node with friction, that is worst in a certificate; none if it belongs to no pair.
+    pub fn worst_pair(&self, certificate: &Certificate) -> Option<(usize, usize)> {
+        let entries = certificate.entries();
+        let (k, worst) = entries.iter().enumerate().max_by(|(_, a), (_, b)| a.ratio.total_cmp(&b.ratio))?;
+        let kind = match Certificate::NAMES[k].1 {
+            "contact row" => RowKind::Inequality,
+            "equality row" => RowKind::Equality,
+            "node" => RowKind::Tangential,
+            _ => return None,
+        };
+        self.model.pairs.of_row(kind, worst.place?)
     }
 }

@@ -1,11 +1,15 @@
 //! Sums over the nodes of a pair.
 
 use crate::error::Result;
-use crate::model::{Geometry, Pair};
+use crate::model::{Pair, PairMethod};
+use crate::platform::memory::headroom;
 use crate::solver::pairs::Sides;
 use crate::solver::problem::Problem;
-use crate::surface::vector::{cross, plus, Vector};
+use crate::surface::vector::{plus, Vector};
 use crate::surface::{between_walls, find, Master, Opposite, Partner, Placed, Tree, NONE};
+
+/// Bytes of a node of either surface: its partner, twice, and its position.
+const PER_NODE: usize = 512;
 
 /// What a pair carries and where it is closed, by the last answer; where it overlaps, at the present positions.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,11 +27,13 @@ pub struct PairFacts {
     pub closed_area: f64,
     /// Largest pressure and its node; none without areas or forces.
     pub largest_pressure: Option<(usize, f64)>,
+    /// The closed node whose normal differs most from that of the master, and the angle, radian > 0: mortar is for faces that lie on each other.
+    pub largest_angle: Option<(usize, f64)>,
     /// The slave node deepest in the master, and its penetration below the offset, length > 0.
     pub deepest: Option<(usize, f64)>,
     /// The node of the master deepest in the slave, and its penetration, length > 0.
     pub deepest_of_master: Option<(usize, f64)>,
-    /// Nodes that lie between two walls of the master and have a row with one of them only, and the first of these nodes.
+    /// Nodes that lie between two walls of the master and have a row with one of them only, and the first of these nodes; by mortar none.
     pub between_walls: usize,
     pub first_between: Option<usize>,
     /// Rows of the last find whose unknowns are all held, and the deepest overlap there, length.
@@ -41,15 +47,13 @@ impl Problem {
         let of = self.model.pairs.pair(pair)?;
         let mut facts = PairFacts { rows: of.nodes.len(), ..PairFacts::default() };
         facts.without = of.met.iter().filter(|met| met.is_none()).count();
-        let x = match &self.model.pairs.surfaces[of.slave] {
-            Geometry::Nodes { x, .. } => &x[..],
-            Geometry::Rigid { .. } => &[],
-        };
         if let Ok(answer) = self.answer() {
             for result in self.results_of(of, Some(answer)) {
-                let force = plus(result.shear, -result.force, result.met.normal);
-                facts.force = plus(facts.force, 1.0, force);
-                facts.moment = plus(facts.moment, 1.0, cross(x[result.node as usize], force));
+                facts.force = plus(facts.force, 1.0, plus(result.shear, -result.force, result.met.normal));
+                facts.moment = plus(facts.moment, 1.0, result.moment);
+                if result.closed > 0.0 && result.met.angle > facts.largest_angle.map_or(0.0, |most| most.1) {
+                    facts.largest_angle = Some((result.node as usize, result.met.angle));
+                }
                 facts.closed += usize::from(result.closed > 0.0);
                 facts.sticking += usize::from(result.closed == 2.0);
                 facts.slipping += usize::from(result.closed == 3.0);
@@ -66,6 +70,8 @@ impl Problem {
     }
 
     fn overlaps(&self, pair: &Pair, facts: &mut PairFacts) -> Result<()> {
+        let nodes = pair.nodes.len() + self.model.pairs.surfaces[pair.master].len();
+        let _room = headroom(nodes.saturating_mul(PER_NODE), "facts on a pair")?;
         let normals = self.normals_of_surfaces()?;
         let sides = Sides::of(&self.model, pair, &normals)?;
         let partners = sides.partners(&mut vec![NONE; pair.nodes.len()])?;
@@ -73,9 +79,11 @@ impl Problem {
         let Opposite::Faces(placed, _) = sides.master else { return Ok(()) };
         let (threads, rule, nodes) = (sides.threads(), sides.rule(), sides.nodes());
         let tree = Tree::new(placed.faces, placed.x)?;
-        let between = between_walls(threads, &placed, &tree, &rule, &nodes, &partners)?;
-        facts.between_walls = between.iter().filter(|between| **between).count();
-        facts.first_between = between.iter().position(|between| *between).map(|k| pair.nodes[k] as usize);
+        if pair.method == PairMethod::NodeToFace {
+            let between = between_walls(threads, &placed, &tree, &rule, &nodes, &partners)?;
+            facts.between_walls = between.iter().filter(|between| **between).count();
+            facts.first_between = between.iter().position(|between| *between).map(|k| pair.nodes[k] as usize);
+        }
         if sides.slave.faces.len() > 0 && pair.laws.scalars.is_on {
             let of_master: Vec<u32> = placed.faces.used().collect();
             let at: Vec<_> =

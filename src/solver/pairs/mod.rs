@@ -7,31 +7,57 @@ mod info;
 pub use fields::PairField;
 pub use info::PairFacts;
 
-use crate::constraints::{RowKind, RowSet, RowsInput};
+use std::sync::Arc;
+
+use crate::constraints::{OwnedRows, RowKind, RowSet, TabledRows};
 use crate::error::{Error, Kind, Result};
 use crate::model::{Geometry, HostModel, Met, Pair, PairMethod, PairRows, Tied};
 use crate::numbers::surface::OVERLAP;
 use crate::platform::memory::headroom;
 use crate::progress::LogLevel;
-use crate::solver::pairs::assembly::{Assembled, Assembly};
+use crate::solver::pairs::assembly::{Assembly, Contact};
 use crate::solver::problem::Problem;
 use crate::surface::vector::{largest, minus, Vector};
-use crate::surface::{areas, find, Depth, Master, Opposite, Partner, Placed, Rigid, Rule, Slave, Tree};
+use crate::surface::{
+    areas, find, Depth, Master, Meeting, Mortar, Opposite, Partner, Placed, Rule, Slave, Tree,
+};
 
-/// Bytes of a slave node during a find: its rows, twice, and its partner.
+/// Bytes of a slave node during a find: its rows, twice, and its partner; by mortar its rows have several nodes of the slave and of several
+/// faces of the master.
 const PER_NODE: usize = 4096;
+const PER_NODE_BY_MORTAR: usize = 12288;
 
 /// What a find has made of one pair.
 struct Found {
     kept: Vec<u32>,
     met: Vec<Option<Met>>,
     adjusted: Option<Vec<f64>>,
-    tied: Option<(Vec<Option<Tied>>, Option<Rigid>)>,
+    tied: Option<Arc<Tied>>,
     areas: Vec<f64>,
     held: (usize, f64),
     /// Contact rows or equality rows of a tie.
-    rows: Assembled,
-    tangential: Assembled,
+    rows: FoundRows,
+    tangential: FoundRows,
+}
+
+/// Rows of one kind over the unknowns of all bodies; those that follow the table of unknowns also as they name its unknowns.
+#[derive(Default)]
+struct FoundRows {
+    set: RowSet,
+    tabled: TabledRows,
+}
+
+impl FoundRows {
+    /// `follows`: which rows change with the table, if the rows are `given` over its unknowns.
+    fn new(set: RowSet, given: Option<OwnedRows>, follows: impl Fn(usize) -> bool) -> Self {
+        let mut tabled = TabledRows::default();
+        for given in given.iter() {
+            for row in (0..given.len()).filter(|row| follows(*row)) {
+                tabled.push(row, given.row(row), given.rhs[row]);
+            }
+        }
+        Self { set, tabled }
+    }
 }
 
 impl Problem {
@@ -41,10 +67,10 @@ impl Problem {
     pub fn pairs_find(&mut self) -> Result<()> {
         self.watched("find", f64::INFINITY, |problem, watch| {
             let interrupt = watch.stops.interrupt.clone();
-            let all = interrupt.during(|| problem.found_pairs())?;
+            let mut all = interrupt.during(|| problem.found_pairs())?;
             let lines: Vec<String> =
                 (0..all.len()).map(|pair| told(&problem.model, pair, &all[pair])).collect();
-            problem.model.set_rows_of_pairs(rows_of(&problem.model, &all)?)?;
+            problem.model.set_rows_of_pairs(rows_of(&problem.model, &mut all))?;
             for (pair, found) in problem.model.pairs.pairs.iter_mut().zip(all) {
                 (pair.kept, pair.met, pair.areas) = (found.kept, found.met, found.areas);
                 (pair.adjusted, pair.tied, pair.held) = (found.adjusted, found.tied, found.held);
@@ -54,8 +80,11 @@ impl Problem {
     }
 
     fn found_pairs(&self) -> Result<Vec<Found>> {
-        let nodes: usize = self.model.pairs.pairs.iter().map(|pair| pair.nodes.len()).sum();
-        let _room = headroom(nodes.saturating_mul(PER_NODE), "rows of pairs")?;
+        let room = |pair: &Pair| match pair.method {
+            PairMethod::NodeToFace => pair.nodes.len().saturating_mul(PER_NODE),
+            PairMethod::Mortar => pair.nodes.len().saturating_mul(PER_NODE_BY_MORTAR),
+        };
+        let _room = headroom(self.model.pairs.pairs.iter().map(room).sum(), "rows of pairs")?;
         let normals = self.normals_of_surfaces()?;
         let pairs = self.model.pairs.pairs.iter().enumerate();
         pairs.map(|(number, pair)| Sides::of(&self.model, pair, &normals)?.found(number)).collect()
@@ -91,7 +120,7 @@ impl<'a> Sides<'a> {
             Geometry::Nodes { faces, x, begin, .. } => {
                 Opposite::Faces(Placed { faces, x, normals: &normals[pair.master] }, begin)
             }
-            Geometry::Rigid { now, begin } => Opposite::Rigid(now, begin),
+            Geometry::Rigid { now, begin } => Opposite::Rigid { found: now, now, begin },
         };
         Ok(Self { model, pair, slave, slave_normals: &normals[pair.slave], master })
     }
@@ -111,18 +140,27 @@ impl<'a> Sides<'a> {
         self.pair.nodes.iter().map(node).collect()
     }
 
-    /// The partners of all nodes of the pair; `kept` as in [`find`].
+    fn master(&self) -> Result<Master<'a>> {
+        Ok(match self.master {
+            Opposite::Faces(placed, _) => Master::Faces(placed, Tree::new(placed.faces, placed.x)?),
+            Opposite::Rigid { now, .. } => Master::Rigid(now),
+        })
+    }
+
+    /// The points of the master nearest to the nodes of the pair; `kept` as in [`find`].
     fn partners(&self, kept: &mut [u32]) -> Result<Vec<Option<Partner>>> {
         if !self.pair.laws.scalars.is_on {
             return Ok(vec![None; self.pair.nodes.len()]);
         }
-        let master = match self.master {
-            Opposite::Faces(placed, _) => Master::Faces(placed, Tree::new(placed.faces, placed.x)?),
-            Opposite::Rigid(rigid, _) => Master::Rigid(rigid),
-        };
-        match self.pair.method {
-            PairMethod::NodeToFace => find(self.threads(), &master, &self.rule(), &self.nodes(), kept),
+        find(self.threads(), &self.master()?, &self.rule(), &self.nodes(), kept)
+    }
+
+    fn meeting(&self, kept: &mut [u32], depth: Depth) -> Result<Meeting> {
+        if self.pair.method == PairMethod::NodeToFace || !self.pair.laws.scalars.is_on {
+            return Ok(Meeting::Feet(self.partners(kept)?));
         }
+        let mortar = Mortar::find(self.threads(), &self.slave, &self.master()?, &self.rule(), depth)?;
+        Ok(Meeting::Mortar(mortar))
     }
 
     fn found(&self, number: usize) -> Result<Found> {
@@ -130,67 +168,72 @@ impl<'a> Sides<'a> {
         let mut kept = pair.kept.clone();
         let scalars = pair.laws.scalars;
         let depth = Depth { thickness: scalars.thickness, axisymmetric: scalars.axisymmetric };
-        let all = areas(self.slave.faces, self.slave.x, depth).map_err(|error| error.pair(number))?;
-        let areas: Vec<f64> = pair.nodes.iter().map(|&node| all[node as usize]).collect();
+        let whole = areas(self.slave.faces, self.slave.x, depth).map_err(|error| error.pair(number))?;
+        let areas = |meeting: &Meeting| -> Vec<f64> {
+            let area = |&node: &u32| match meeting {
+                Meeting::Feet(_) => whole[node as usize],
+                Meeting::Mortar(mortar) => mortar.area(node),
+            };
+            pair.nodes.iter().map(area).collect()
+        };
         let assembly = Assembly::of(self.model, pair)?;
         if pair.is_tied {
-            let rigid = if let Opposite::Rigid(now, _) = self.master { Some(*now) } else { None };
             let tied = match &pair.tied {
                 Some(tied) => tied.clone(),
-                None => (assembly.points(self, &self.partners(&mut kept)?), rigid),
+                None => Arc::new(assembly.points(self, self.meeting(&mut kept, depth)?)),
             };
-            let master = match (self.master, &tied.1) {
-                (Opposite::Rigid(now, _), Some(found)) => Opposite::Rigid(found, now),
-                (master, _) => master,
-            };
-            let (rows, met) = assembly.ties(self, &master, &tied.0)?;
+            let (made, met) = assembly.ties(self, &tied).map_err(|error| error.pair(number))?;
+            let (mut set, areas) = (made.set, areas(&tied.meeting));
+            // a row that has lost all its unknowns demands nothing
+            let lost: Vec<bool> = (0..set.len()).map(|row| set.is_empty_row(row)).collect();
+            set.rhs.iter_mut().zip(&lost).filter(|(_, lost)| **lost).for_each(|(h, _)| *h = 0.0);
+            let rows = FoundRows::new(set, made.given, |row| !lost[row]);
             // points are found by the first find that is on
             let tied = (scalars.is_on || pair.tied.is_some()).then_some(tied);
-            let (adjusted, held, tangential) = (None, (0, 0.0), Assembled::default());
+            let (adjusted, held, tangential) = (None, (0, 0.0), FoundRows::default());
             return Ok(Found { kept, met, adjusted, tied, areas, held, rows, tangential });
         }
-        let partners = self.partners(&mut kept)?;
-        let adjusted = pair.adjusted.clone().unwrap_or_else(|| self.adjusted(&partners));
-        let (mut rows, mut tangential, met) = assembly.contact(self, &partners, &adjusted)?;
-        let held = self.switch_off(number, &mut rows, &mut tangential)?;
-        rows.compliance = pair
-            .laws
-            .compliance
-            .iter()
-            .zip(&areas)
-            .map(|(c, area)| if *c > 0.0 { c / area } else { 0.0 })
-            .collect();
+        let meeting = self.meeting(&mut kept, depth)?;
+        let areas = areas(&meeting);
+        let Contact { contact, tangential, met, adjusted } =
+            assembly.contact(self, &meeting, pair.adjusted.as_deref()).map_err(|error| error.pair(number))?;
+        let (mut rows, mut slips) = (contact.set, tangential.set);
+        let held = self.switch_off(number, &mut rows, &mut slips)?;
+        rows.set_compliance(0, &self.compliances(number, &areas)?)?;
+        let closes: Vec<bool> = (0..rows.len()).map(|row| rows.is_finite(row)).collect();
+        let rows = FoundRows::new(rows, contact.given, |row| closes[row]);
+        let of_node = self.slave.faces.dim - 1;
+        let tangential = FoundRows::new(slips, tangential.given, |row| closes[row / of_node]);
         let adjusted = (scalars.is_on || pair.adjusted.is_some()).then_some(adjusted);
         Ok(Found { kept, met, adjusted, tied: None, areas, held, rows, tangential })
     }
 
-    /// Gaps of the first find that count as 0.
-    fn adjusted(&self, partners: &[Option<Partner>]) -> Vec<f64> {
-        let laws = &self.pair.laws;
-        let of = |(k, partner): (usize, &Option<Partner>)| {
-            let gap = partner.as_ref().map_or(0.0, |partner| partner.gap() - laws.offset[k]);
-            if gap.abs() <= laws.scalars.adjust {
-                gap
-            } else {
-                0.0
+    /// 1/k of the rows. By mortar a node without area has no partner.
+    fn compliances(&self, number: usize, areas: &[f64]) -> Result<Vec<f64>> {
+        let (laws, is_mortar) = (&self.pair.laws, self.pair.method == PairMethod::Mortar);
+        let of = |(k, c): (usize, &f64)| {
+            let each = c / areas[k];
+            if *c == 0.0 || (is_mortar && areas[k] == 0.0) {
+                return Ok(0.0);
             }
+            if each.is_finite() {
+                return Ok(each);
+            }
+            let what = "the node has a compliance, length per pressure, and its faces have no area at these positions";
+            let error = Error::new(Kind::State, what).pair(number).node(self.pair.nodes[k] as usize);
+            Err(error.value(areas[k]))
         };
-        partners.iter().enumerate().map(of).collect()
+        laws.compliance.iter().enumerate().map(of).collect()
     }
 
-    /// Rows whose unknowns are all held never close, if they overlap by rounding at most. Their number, and the deepest overlap.
-    fn switch_off(
-        &self,
-        number: usize,
-        rows: &mut Assembled,
-        tangential: &mut Assembled,
-    ) -> Result<(usize, f64)> {
-        let mut held = (0, 0.0f64);
+    /// Rows that have lost all their unknowns never close, if they overlap by rounding at most. Their number, and the deepest overlap.
+    fn switch_off(&self, number: usize, rows: &mut RowSet, tangential: &mut RowSet) -> Result<(usize, f64)> {
+        let (mut held, each) = ((0, 0.0f64), self.slave.faces.dim - 1);
+        let limit = OVERLAP * self.extent();
         for k in 0..rows.len() {
-            if rows.rhs[k] == f64::INFINITY || !rows.is_empty(k) {
+            if rows.rhs[k] == f64::INFINITY || !rows.is_empty_row(k) {
                 continue;
             }
-            let limit = OVERLAP * self.extent();
             if rows.rhs[k] < -limit {
                 let what = format!(
                     "the node and the face that it has met cannot move, and they overlap by {:.1e}",
@@ -202,7 +245,8 @@ impl<'a> Sides<'a> {
             }
             held = (held.0 + 1, held.1.max(-rows.rhs[k]));
             rows.rhs[k] = f64::INFINITY;
-            tangential.clear(k);
+            // such a node slips by nothing
+            tangential.rhs.iter_mut().skip(each * k).take(each).for_each(|s| *s = 0.0);
         }
         Ok(held)
     }
@@ -223,31 +267,31 @@ impl<'a> Sides<'a> {
 }
 
 /// The rows of all pairs, in their order.
-fn rows_of(model: &HostModel, all: &[Found]) -> Result<PairRows> {
+fn rows_of(model: &HostModel, all: &mut [Found]) -> PairRows {
     let pairs = &model.pairs.pairs;
-    let mut rows = PairRows::default();
-    for (pair, found) in pairs.iter().zip(all) {
-        let set = if pair.is_tied { &mut rows.equalities } else { &mut rows.contact };
-        append(model, set, pair.kind(), &found.rows)?;
-    }
     let mut with_friction: Vec<usize> = (0..pairs.len()).filter(|&k| pairs[k].friction.is_some()).collect();
     with_friction.sort_by_key(|&k| pairs[k].friction);
-    for k in with_friction {
-        append(model, &mut rows.tangential, RowKind::Tangential, &all[k].tangential)?;
+    let mut rows = PairRows::default();
+    for &k in &with_friction {
         let laws = &pairs[k].laws;
         rows.coefficient.extend(&laws.friction);
         rows.bound.extend(laws.cohesion.iter().zip(&all[k].areas).map(|(c, area)| c * area));
     }
-    Ok(rows)
-}
-
-fn append(model: &HostModel, set: &mut RowSet, kind: RowKind, of: &Assembled) -> Result<()> {
-    let input = RowsInput { ptr: &of.ptr, body: None, dof: &of.dof, val: &of.val, rhs: Some(&of.rhs) };
-    let first = set.add(kind, input, &model.offsets)?;
-    if of.compliance.is_empty() {
-        return Ok(());
+    for kind in RowKind::ALL {
+        let numbers: Vec<usize> = match kind {
+            RowKind::Tangential => with_friction.clone(),
+            _ => (0..pairs.len()).filter(|&k| pairs[k].kind() == kind).collect(),
+        };
+        let (mut sets, mut first) = (Vec::new(), 0);
+        for k in numbers {
+            let of = if kind == RowKind::Tangential { &mut all[k].tangential } else { &mut all[k].rows };
+            rows.tabled[kind as usize].append(&of.tabled, first);
+            first += of.set.len();
+            sets.push(std::mem::take(&mut of.set));
+        }
+        rows.sets[kind as usize] = RowSet::joined(sets);
     }
-    set.set_compliance(first, &of.compliance)
+    rows
 }
 
 /// The line of the log for one pair.

@@ -33,10 +33,11 @@ use messages::{Called, Finish};
 
 impl Problem {
     /// This rank gives its part of the problem: bodies and rows, which rows of other ranks may name by numbers. On every rank that gives
-    /// some, before the first body, in the same order for several problems.
+    /// some, before the first body and surface, in the same order for several problems.
     pub fn join(&mut self, rank: Arc<Rank>) -> Result<()> {
-        if !self.model.bodies.is_empty() {
-            return Err(Error::new(Kind::State, "the ranks must be given before the first body"));
+        if !self.model.bodies.is_empty() || !self.model.pairs.surfaces.is_empty() {
+            let what = "the ranks must be given before the first body and the first surface";
+            return Err(Error::new(Kind::State, what));
         }
         let ranks = &rank.ranks;
         let problem = ranks.block(1);

@@ -2,8 +2,8 @@
 
 mod closed;
 mod meshes;
-mod motions;
-mod slips;
+pub mod motions;
+pub mod slips;
 mod speed;
 
 pub use meshes::{cube, curve, mesh, pulled, random_mesh, Mesh};

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::linalg::random::scattered;
-use crate::surface::vector::{cross, dot, largest, length, plus, times, unit, ZERO};
-use crate::surface::{rows, tie, Opposite, Row, Shape, Slave};
+use crate::surface::vector::{cross, dot, largest, length, plus, times, ZERO};
+use crate::surface::{Meeting, Opposite, Rows, Shape, Slave};
 
 /// Nodes above, in and below a bumpy surface, some of them on its edges and nodes.
 fn slave_of(master: &Mesh, shape: Shape, gap: f64) -> Mesh {
@@ -27,12 +27,28 @@ fn all_found(slave: &Mesh, master: &Mesh) -> Vec<Option<Partner>> {
     found(slave, master, Rule { cosine: 2.0, ..rule(0.6) }, 1, &mut vec![NONE; slave.x.len()]).unwrap()
 }
 
-fn product(row: &Row, slave: Vector, master: impl Fn(usize) -> Vector) -> f64 {
-    dot(row.slave, slave) + row.master().map(|(node, v)| dot(v, master(node as usize))).sum::<f64>()
+/// Openings along which a pair has rows.
+pub fn used(dim: usize) -> impl Iterator<Item = usize> {
+    (0..3).filter(move |i| dim == 3 || *i != 1)
 }
 
-fn norm(row: &Row) -> f64 {
-    (dot(row.slave, row.slave) + row.master().map(|(_, v)| dot(v, v)).sum::<f64>()).sqrt()
+/// The change of opening i in motions of slave and master.
+pub fn product(
+    rows: &Rows,
+    i: usize,
+    slave: impl Fn(usize) -> Vector,
+    master: impl Fn(usize) -> Vector,
+) -> f64 {
+    let of_slave = rows.slave.iter().map(|(node, of)| dot(of[i], slave(*node as usize)));
+    of_slave.chain(rows.master.iter().map(|(node, of)| dot(of[i], master(*node as usize)))).sum()
+}
+
+pub fn norm(rows: &Rows, i: usize) -> f64 {
+    rows.slave.iter().chain(&rows.master).map(|(_, of)| dot(of[i], of[i])).sum::<f64>().sqrt()
+}
+
+fn alone(partner: &Partner) -> Meeting {
+    Meeting::Feet(vec![Some(*partner)])
 }
 
 struct Case {
@@ -48,7 +64,7 @@ fn case(shape: Shape, gap: f64, bumps: f64) -> Case {
 }
 
 impl Case {
-    fn each(&self, mut see: impl FnMut(usize, &Partner, Vec<Row>, bool)) -> usize {
+    fn each(&self, mut see: impl FnMut(usize, &Partner, [Rows; 2], bool)) -> usize {
         let Self { slave, master, normals } = self;
         let placed = Placed { faces: &master.faces, x: &master.x, normals };
         let (of_slave, opposite) =
@@ -56,12 +72,9 @@ impl Case {
         let mut on_edges = 0;
         for (k, partner) in all_found(slave, master).iter().enumerate() {
             let Some(partner) = partner else { continue };
-            let all = rows(&of_slave, &opposite, k as u32, partner).unwrap();
-            let (ties, _) = tie(&of_slave, &opposite, k as u32, partner).unwrap();
-            let dim = master.faces.dim;
-            let mut rows = vec![all.contact];
-            rows.extend(&all.tangential[..dim - 1]);
-            rows.extend(ties.iter().filter(|row| dim == 3 || row.slave[2] == 0.0));
+            let meeting = alone(partner);
+            let rows = meeting.rows(&of_slave, &opposite, 0, k as u32).unwrap();
+            let rows = [rows, meeting.tie(&of_slave, &opposite, 0, k as u32).unwrap()];
             let is_inside = matches!(partner, Partner::Face(foot) if foot.is_inside);
             on_edges += usize::from(!is_inside);
             see(k, partner, rows, is_inside);
@@ -92,14 +105,14 @@ fn rows_do_no_work_in_a_motion_that_both_sides_share() {
         let motions: Vec<_> = motions.collect();
         let mut seen = 0;
         let on_edges = case.each(|k, partner, rows, _| {
-            for (row, (spin, way)) in
-                rows.iter().flat_map(|row| motions.iter().map(move |motion| (row, motion)))
+            let all = rows.iter().flat_map(|rows| used(shape.dim()).map(move |i| (rows, i)));
+            for ((rows, i), (spin, way)) in all.flat_map(|of| motions.iter().map(move |motion| (of, motion)))
             {
                 let u = |x: Vector| plus(cross(*spin, x), 1.0, *way);
-                let work = product(row, u(case.slave.x[k]), |node| u(case.master.x[node]));
-                assert!(work.abs() <= 1e-13 * norm(row), "{shape:?} {gap}: {work:e} {partner:?}");
+                let work = product(rows, i, |_| u(case.slave.x[k]), |node| u(case.master.x[node]));
+                assert!(work.abs() <= 1e-13 * norm(rows, i), "{shape:?} {gap}: {work:e} {partner:?}");
             }
-            seen += rows.len();
+            seen += 2 * shape.dim();
         });
         assert!(seen > 40 && (gap == -0.2 || on_edges > 0), "{shape:?} {gap}: {seen} {on_edges}");
     }
@@ -126,42 +139,32 @@ fn rows_are_the_gradients_of_gap_slip_and_opening() {
             let placed = Placed { faces: &master.faces, x: &master.x, normals: &normals };
             let with = |begin: usize| {
                 let (x, y) = &at[begin];
-                rows(
-                    &Slave { faces: &slave.faces, x: &slave.x, begin: x },
-                    &Opposite::Faces(placed, y),
-                    node,
-                    partner,
-                )
-                .unwrap()
+                let of = Slave { faces: &slave.faces, x: &slave.x, begin: x };
+                alone(partner).rows(&of, &Opposite::Faces(placed, y), 0, node).unwrap()
             };
             let opened = |which: usize| {
                 let (x, y) = &at[which];
                 let placed = Placed { x: y, ..placed };
-                tie(&Slave { faces: &slave.faces, x, begin: x }, &Opposite::Faces(placed, y), node, partner)
-                    .unwrap()
-                    .1
+                let of = Slave { faces: &slave.faces, x, begin: x };
+                alone(partner).tie(&of, &Opposite::Faces(placed, y), 0, node).unwrap().opening
             };
             let (now, plus_h, minus_h) = (with(0), with(0), with(1));
-            let times_way = |row: &Row| product(row, of_slave[k], |node| of_master[node]);
+            let times_way =
+                |rows: &Rows, i: usize| product(rows, i, |node| of_slave[node], |node| of_master[node]);
             for a in 0..dim - 1 {
-                let slope = (plus_h.s_old[a] - minus_h.s_old[a]) / (2.0 * H);
+                let slope = (plus_h.before[a] - minus_h.before[a]) / (2.0 * H);
                 assert!(
-                    (slope - times_way(&now.tangential[a])).abs() < 1e-7,
+                    (slope - times_way(&now, a)).abs() < 1e-7,
                     "{shape:?} {slope} {}",
-                    times_way(&now.tangential[a])
+                    times_way(&now, a)
                 );
             }
             let (here, there) = (opened(0), opened(1));
-            let own = tie(
-                &Slave { faces: &slave.faces, x: &slave.x, begin: &slave.x },
-                &Opposite::Faces(placed, &master.x),
-                node,
-                partner,
-            )
-            .unwrap();
+            let of = Slave { faces: &slave.faces, x: &slave.x, begin: &slave.x };
+            let own = alone(partner).tie(&of, &Opposite::Faces(placed, &master.x), 0, node).unwrap();
             for i in 0..3 {
                 let slope = (here[i] - there[i]) / (2.0 * H);
-                assert!((slope - times_way(&own.0[i])).abs() < 1e-7, "{shape:?} {i}");
+                assert!((slope - times_way(&own, i)).abs() < 1e-7, "{shape:?} {i}");
             }
             let gaps = at.each_ref().map(|(x, y)| {
                 let patch = master.faces.patch(foot.face, y);
@@ -173,7 +176,7 @@ fn rows_are_the_gradients_of_gap_slip_and_opening() {
             });
             if foot.distance > 1e-2 {
                 let slope = (gaps[0] - gaps[1]) / (2.0 * H);
-                assert!((slope + times_way(&now.contact)).abs() < 1e-7, "{shape:?}: {slope} {foot:?}");
+                assert!((slope - times_way(&now, 2)).abs() < 1e-7, "{shape:?}: {slope} {foot:?}");
             }
         }
     }
@@ -188,17 +191,18 @@ fn directions_of_a_row_are_unit_vectors_across_each_other() {
         for (k, partner) in all_found(slave, master).iter().enumerate() {
             let Some(partner) = partner else { continue };
             let of = Slave { faces: &slave.faces, x: &slave.x, begin: &slave.x };
-            let all = rows(&of, &Opposite::Faces(placed, &master.x), k as u32, partner).unwrap();
-            let [t, second] = all.tangents;
-            assert!((length(t) - 1.0).abs() < 1e-15 && dot(t, all.normal).abs() < 1e-15);
-            let expected = if shape.dim() == 2 { ZERO } else { cross(all.normal, t) };
+            let all = alone(partner).rows(&of, &Opposite::Faces(placed, &master.x), 0, k as u32).unwrap();
+            let [t, second, of_master] = all.directions;
+            let normal = times(-1.0, of_master);
+            assert!((length(t) - 1.0).abs() < 1e-15 && dot(t, normal).abs() < 1e-15);
+            let expected = if shape.dim() == 2 { ZERO } else { cross(normal, t) };
             assert!(largest(plus(second, -1.0, expected)) < 1e-15);
             // in the plane along the slave's faces, whose body is on the left
             assert!(
                 shape.dim() == 3
-                    || largest(plus(t, -1.0, times(1.0, cross([0.0, 0.0, 1.0], all.normal)))) < 1e-15
+                    || largest(plus(t, -1.0, times(1.0, cross([0.0, 0.0, 1.0], normal)))) < 1e-15
             );
-            assert!(unit(t).is_some() && all.s_old.iter().all(|s| s.abs() < 1e-14), "nothing has slipped");
+            assert!((0..2).all(|a| (all.before[a] - all.opening[a]).abs() < 1e-14), "nothing has slipped");
         }
     }
 }

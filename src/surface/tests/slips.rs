@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::surface::vector::{dot, minus, plus, turned, unit, ZERO};
-use crate::surface::{rows, Faces, Opposite, Rigid, RigidShape, Shape, Slave};
+use crate::surface::{Faces, Meeting, Opposite, Rigid, RigidShape, Shape, Slave};
 
 /// Half a radian about (1, 2, -1), or in the plane about the origin.
-fn rotated(x: Vector, flat: bool) -> Vector {
+pub fn rotated(x: Vector, flat: bool) -> Vector {
     let axis = if flat { [0.0, 0.0, 1.0] } else { unit([1.0, 2.0, -1.0]).unwrap() };
     let (from, _) = (crate::surface::vector::any_across(axis), 0);
     let to = plus(
@@ -39,15 +39,13 @@ fn a_known_slip_comes_out_of_a_step_with_half_a_radian() {
             // once with t of the slave, once with t of the master, as nodes of a cloud have
             for faces in [&slave.faces, &Faces::new(shape.dim(), slave.x.len()).unwrap()] {
                 let of_slave = Slave { faces, x: &slave.x, begin: &begin_of_slave.x };
+                let opposite = Opposite::Faces(placed, &begin_of_master.x);
                 let all =
-                    rows(&of_slave, &Opposite::Faces(placed, &begin_of_master.x), k as u32, partner).unwrap();
+                    Meeting::Feet(vec![Some(*partner)]).rows(&of_slave, &opposite, 0, k as u32).unwrap();
                 for a in 0..shape.dim() - 1 {
-                    let expected = -dot(all.tangents[a], rotated(slip, flat));
-                    assert!(
-                        (all.s_old[a] - expected).abs() < 1e-12,
-                        "{shape:?}: {} {expected}",
-                        all.s_old[a]
-                    );
+                    let expected = -dot(all.directions[a], rotated(slip, flat));
+                    let s_old = all.before[a] - all.opening[a];
+                    assert!((s_old - expected).abs() < 1e-12, "{shape:?}: {s_old} {expected}");
                 }
                 seen += 1;
             }
@@ -71,11 +69,12 @@ fn a_rigid_plane_that_turns_takes_its_points_along() {
     let (x, begin_x) = ([turned_now], [before]);
     let mut kept = [NONE];
     let found = find(1, &Master::Rigid(&now), &rule(5.0), &[(x[0], ZERO)], &mut kept).unwrap()[0].unwrap();
-    let all =
-        rows(&Slave { faces: &cloud, x: &x, begin: &begin_x }, &Opposite::Rigid(&now, &begin), 0, &found)
-            .unwrap();
+    let of = Slave { faces: &cloud, x: &x, begin: &begin_x };
+    let opposite = Opposite::Rigid { found: &now, now: &now, begin: &begin };
+    let all = Meeting::Feet(vec![Some(found)]).rows(&of, &opposite, 0, 0).unwrap();
     for a in 0..2 {
-        assert!((all.s_old[a] + dot(all.tangents[a], turned(slip, n, to))).abs() < 1e-14);
+        let s_old = all.before[a] - all.opening[a];
+        assert!((s_old + dot(all.directions[a], turned(slip, n, to))).abs() < 1e-14);
     }
-    assert!(all.contact.master().next().is_none() && all.tangential[0].slave == all.tangents[0]);
+    assert!(all.master.is_empty() && all.slave == [(0, all.directions)]);
 }

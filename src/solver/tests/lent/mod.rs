@@ -90,7 +90,7 @@ fn serial(stiffness: &[f64]) -> Vec<u64> {
 }
 
 /// Two ranks that serve, and what each keeps after its last answer.
-struct Served {
+pub struct Served {
     leader: Arc<Ranks>,
     threads: Vec<JoinHandle<()>>,
     kept: Vec<Arc<AtomicUsize>>,
@@ -99,7 +99,7 @@ struct Served {
 }
 
 /// `instead`: of rank and number of the request, an answer in place of the right one.
-fn served(instead: impl Fn(usize, usize) -> Option<Result<Vec<u8>>> + Clone + Send + 'static) -> Served {
+pub fn served(instead: impl Fn(usize, usize) -> Option<Result<Vec<u8>>> + Clone + Send + 'static) -> Served {
     let (leader, others) = linked(3);
     serving(leader, others, instead)
 }
@@ -136,7 +136,7 @@ fn serving(
 }
 
 impl Served {
-    fn lending(&self) -> Option<Lending> {
+    pub fn lending(&self) -> Option<Lending> {
         Some(Lending::new(Arc::clone(&self.leader), true))
     }
 
@@ -154,7 +154,7 @@ impl Served {
     }
 
     /// What is kept after the end.
-    fn end(self) -> usize {
+    pub fn end(self) -> usize {
         self.leader.end().unwrap();
         let Self { leader, threads, kept, .. } = self;
         drop(leader);

@@ -88,12 +88,16 @@ fn offsets_and_adjusted_gaps_belong_to_their_nodes() {
 
 #[test]
 fn a_held_node_that_overlaps_is_named_with_its_pair_and_rounding_is_not() {
+    METHODS.into_iter().for_each(held_node);
+}
+
+fn held_node(method: PairMethod) {
     let upper = block(&[0.0, 0.0], &[2.0, 1.0], &[4, 2], |x| x[0] == 0.0);
     let mut problem = Problem::new();
     let body = upper.give(&mut problem);
     let slave = upper.surface(&mut problem, body, false);
     let master = plane(&mut problem, 1e-17);
-    let made = pair(&mut problem, slave, master, 0.1);
+    let made = pair_by(&mut problem, method, slave, master, 0.1);
     problem.pairs_find().unwrap();
     assert_eq!(problem.model.contact.rhs[0], f64::INFINITY, "switched off");
     assert!(problem.model.contact.rhs[1] < 1e-15);
@@ -104,6 +108,17 @@ fn a_held_node_that_overlaps_is_named_with_its_pair_and_rounding_is_not() {
     let error = problem.pairs_find().unwrap_err();
     assert_eq!((error.kind, error.place.pair, error.place.node), (Kind::GapsContradict, Some(made), Some(0)));
     assert_eq!(problem.model.contact.rhs, before, "a find that fails changes nothing");
+}
+
+#[test]
+fn a_compliant_node_whose_faces_have_lost_their_area_is_named() {
+    let (mut problem, upper, _, slave) = foot();
+    let master = plane(&mut problem, 0.0);
+    let made = pair(&mut problem, slave, master, 1.0);
+    problem.pair_set(made, "compliance", &[1.0]).unwrap();
+    problem.surface_move(slave, &vec![0.0; 2 * upper.nodes()], 2).unwrap();
+    let error = problem.pairs_find().unwrap_err();
+    assert_eq!((error.kind, error.place.pair, error.place.node), (Kind::State, Some(made), Some(0)));
 }
 
 #[test]
@@ -141,6 +156,9 @@ fn misuse_is_refused_with_its_argument() {
     for distance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(pair_of(slave, master, distance), argument("distance"));
     }
+    let cloud = problem.surface_add(Some(body), 2, &x, 2, Some((&dof, 2))).unwrap();
+    let refused = problem.pair_add(cloud, master, PairMethod::Mortar, false, 1.0).unwrap_err();
+    assert_eq!(kind(refused), Kind::Unsupported, "a cloud has no areas");
     let made = pair(&mut problem, slave, master, 1.0);
     assert_eq!(kind(problem.surface_faces(slave, Shape::Line2, &[0, 1]).unwrap_err()), Kind::State);
     assert_eq!(kind(problem.surface_move(slave, &x[2..], 2).unwrap_err()), argument("x"));
@@ -152,7 +170,7 @@ fn misuse_is_refused_with_its_argument() {
         assert_eq!((error.kind, error.place.pair), (argument("value"), Some(made)), "{name}");
     }
     assert_eq!(kind(problem.pair_set(made, "stiffness", &[1.0]).unwrap_err()), argument("name"));
-    assert_eq!(kind(problem.pair_set(made, "depth", &[1.0, 1.0]).unwrap_err()), argument("value"));
+    assert_eq!(kind(problem.pair_set(made, "depth", &[1.0, 1.0]).unwrap_err()), argument("n"));
     assert_eq!(kind(problem.pair_set(5, "depth", &[1.0]).unwrap_err()), argument("pair"));
     assert_eq!(kind(problem.pair_field(made, PairField::Force).unwrap_err()), Kind::State, "no answer");
     host_row(&mut problem);

@@ -7,7 +7,7 @@ use crate::solver::{Outcome, PairField, RigidShape, RowKind};
 #[test]
 fn the_pressure_between_two_blocks_has_the_load_as_its_resultant() {
     const P: f64 = 1e-3;
-    for dim in [2, 3] {
+    for (dim, method) in [2, 3].into_iter().flat_map(|dim| METHODS.map(|method| (dim, method))) {
         let (size, steps) = (&[2.0, 1.0, 0.5][3 - dim..], &[4, 3, 2][3 - dim..]);
         let mut low = vec![0.0; dim];
         let lower = block(&low, size, steps, |x| x[dim - 1] == 0.0);
@@ -17,7 +17,7 @@ fn the_pressure_between_two_blocks_has_the_load_as_its_resultant() {
         let bodies = [lower.give(&mut problem), upper.give(&mut problem)];
         let (master, slave) =
             (lower.surface(&mut problem, bodies[0], true), upper.surface(&mut problem, bodies[1], false));
-        let made = pair(&mut problem, slave, master, 0.1);
+        let made = pair_by(&mut problem, method, slave, master, 0.1);
         // some friction holds the upper block
         problem.pair_set(made, "friction", &[0.3]).unwrap();
         problem.pairs_find().unwrap();
@@ -47,7 +47,7 @@ fn the_pressure_between_two_blocks_has_the_load_as_its_resultant() {
 #[test]
 fn a_block_on_a_rigid_plane_has_the_pressure_of_its_load() {
     const P: f64 = 1e-3;
-    for dim in [2, 3] {
+    for (dim, method) in [2, 3].into_iter().flat_map(|dim| METHODS.map(|method| (dim, method))) {
         let (size, steps) = (&[2.0, 1.0, 0.5][3 - dim..], &[4, 3, 2][3 - dim..]);
         let upper = block(&vec![0.0; dim], size, steps, |_| false);
         let mut problem = Problem::new();
@@ -56,7 +56,7 @@ fn a_block_on_a_rigid_plane_has_the_pressure_of_its_load() {
         let mut data = vec![0.0; 2 * dim];
         data[2 * dim - 1] = 1.0;
         let master = problem.surface_rigid(dim, RigidShape::Plane, &data).unwrap();
-        let made = pair(&mut problem, slave, master, 0.1);
+        let made = pair_by(&mut problem, method, slave, master, 0.1);
         problem.pairs_find().unwrap();
         let areas = problem.pair_field(made, PairField::Area).unwrap();
         let mut load = vec![0.0; upper.dof.len()];
@@ -73,13 +73,14 @@ fn a_block_on_a_rigid_plane_has_the_pressure_of_its_load() {
 #[test]
 fn a_plane_that_moves_drags_the_block_until_it_slips() {
     let upper = block(&[0.0, 0.0, 0.0], &[2.0, 1.0, 0.5], &[3, 2, 2], |x| x[2] == 0.5);
-    for (moved, sticks) in [(1e-5, true), (0.05, false)] {
+    let cases = METHODS.into_iter().flat_map(|method| [(1e-5, true, method), (0.05, false, method)]);
+    for (moved, sticks, method) in cases {
         let mut problem = Problem::new();
         let body = upper.give(&mut problem);
         let slave = upper.surface(&mut problem, body, false);
         let plane = |x: f64| [x, 0.0, 0.0, 0.0, 0.0, 1.0];
         let master = problem.surface_rigid(3, RigidShape::Plane, &plane(0.0)).unwrap();
-        let made = pair(&mut problem, slave, master, 0.1);
+        let made = pair_by(&mut problem, method, slave, master, 0.1);
         problem.pair_set(made, "offset", &[1e-3]).unwrap();
         problem.pair_set(made, "friction", &[0.3]).unwrap();
         problem.surface_move(master, &plane(moved), 1).unwrap();
@@ -144,12 +145,16 @@ fn a_cloud_of_points_carries_forces() {
 /// 1/k = compliance / area: the foot yields by compliance x pressure.
 #[test]
 fn a_compliant_face_yields_by_its_pressure() {
+    METHODS.into_iter().for_each(compliant);
+}
+
+fn compliant(method: PairMethod) {
     let upper = block(&[0.0, 0.0], &[2.0, 1.0], &[4, 2], |x| x[1] == 1.0);
     let mut problem = Problem::new();
     let body = upper.give(&mut problem);
     let slave = upper.surface(&mut problem, body, false);
     let master = problem.surface_rigid(2, RigidShape::Plane, &[0.0, 0.01, 0.0, 1.0]).unwrap();
-    let made = pair(&mut problem, slave, master, 0.1);
+    let made = pair_by(&mut problem, method, slave, master, 0.1);
     problem.pair_set(made, "compliance", &[2.0]).unwrap();
     problem.pair_set(made, "thickness", &[0.25]).unwrap();
     problem.pairs_find().unwrap();

@@ -3,6 +3,7 @@
 mod forms;
 mod made;
 mod mistakes;
+mod surfaces;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
