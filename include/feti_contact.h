@@ -88,6 +88,13 @@
  *     feti_friction_add_i32 feti_friction_add_i64 feti_friction_law feti_friction_compliance
  *     feti_friction_counts
  *
+ * Surfaces: Give surfaces with positions and faces, in place of rows of your own.
+ *     feti_surface_add_i32 feti_surface_add_i64 feti_surface_faces_i32 feti_surface_faces_i64
+ *     feti_surface_rigid feti_surface_move feti_surface_counts
+ *
+ * Pairs of surfaces: Say which surfaces may meet, find where they meet, read pressures.
+ *     feti_pair_add feti_pair_set_f64 feti_pairs_find feti_pairs_commit feti_pair_field feti_pair_info
+ *
  * Options: Set tolerance, threads, method and limits, by name.
  *     feti_set_f64 feti_set_i64 feti_set_str feti_set_text feti_get_f64 feti_get_i64 feti_get_str
  *     feti_option_count feti_option_at
@@ -334,9 +341,9 @@ int32_t feti_body_numbering_i64(feti_problem *p, int64_t body, int64_t n, const 
  * stay with the host. In an increment, `constant` is what is left to go: the prescribed minus the present
  * value.
  *
- * Another call replaces the table: the rows follow. With other constants alone, only right-hand sides
- * change. FETI_STATE from feti_body_add and feti_body_numbering_i32 after this call. On several ranks the
- * table names unknowns of its rank.
+ * Another call replaces the table: the rows follow, also those of pairs of surfaces. With other constants
+ * alone, only right-hand sides change. FETI_STATE from feti_body_add and feti_body_numbering_i32 after
+ * this call. On several ranks the table names unknowns of its rank.
  *
  * @param n           unknowns of the host
  * @param number      (n) number of the unknown of K, counted from `base`: that of feti_body_numbering_i32
@@ -811,6 +818,328 @@ int32_t feti_friction_compliance(feti_problem *p, int64_t first, int64_t nodes, 
  * @param[out] dim   tangential rows of a node, 1 or 2, 0 without nodes; may be NULL
  */
 int32_t feti_friction_counts(feti_problem *p, int64_t *nodes, int32_t *dim);
+
+/* ==== Surfaces ====
+ * Give surfaces with positions and faces, in place of rows of your own. */
+
+/**
+ * Shape of a face in the plane: a line with 2 nodes. Corners come first, then the nodes on the edges, then
+ * the one in the centre, as in VTK.
+ */
+#define FETI_LINE2 1
+/** Shape of a face in the plane: a line with 3 nodes, the last in the middle. */
+#define FETI_LINE3 2
+/** Shape of a face in space: a triangle with 3 nodes. */
+#define FETI_TRI3 3
+/** Shape of a face in space: a triangle with 6 nodes. */
+#define FETI_TRI6 4
+/** Shape of a face in space: a quadrilateral with 4 nodes. */
+#define FETI_QUAD4 5
+/** Shape of a face in space: a quadrilateral with 8 nodes. */
+#define FETI_QUAD8 6
+/** Shape of a face in space: a quadrilateral with 9 nodes. */
+#define FETI_QUAD9 7
+/** Shape of a rigid surface: a plane; data: a point, the outward normal. */
+#define FETI_PLANE 11
+/** Shape of a rigid surface: a sphere, in the plane a circle; data: the centre, the radius. */
+#define FETI_SPHERE 12
+/**
+ * Shape of a rigid surface in space: a cylinder without ends; data: a point of the axis, its direction,
+ * the radius.
+ */
+#define FETI_CYLINDER 13
+
+/**
+ * Adds a surface over nodes of a mesh, with 32-bit indices.
+ *
+ * Its faces come by feti_surface_faces_i32. You may give all nodes of a mesh: nodes in no face are left
+ * out. A surface without faces is a cloud of points: it may be the slave of a pair, but it has no areas,
+ * no pressures, and no normals by which the library could leave out faces that look the other way. Nodes
+ * may share unknowns. Without `dof` the surface is a tool that only the host moves; it can be the master
+ * of a pair, not the slave. The positions are those at which K was assembled; feti_surface_move gives new
+ * ones. On several ranks a surface names unknowns of its rank (FETI_UNSUPPORTED). FETI_STATE with FETI_ALL
+ * if some bodies have numbers of the host and others have none.
+ *
+ * @param      body    number of the body, from 0, or FETI_ALL
+ * @param      dim     dimensions, 2 or 3
+ * @param      nodes   number of nodes
+ * @param      x       (ldx * nodes) coordinates, the first dim numbers of each column, finite, length
+ * @param      ldx     >= dim
+ * @param      dof     (ldd * nodes) unknown of each direction, the first dim numbers of each column,
+ *                     counted from `base`; below `base`: held. With FETI_ALL an unknown of the table
+ *                     (feti_dof_table_i32, called before) or, without a table, the host's number
+ *                     (feti_body_numbering_i32) or, without such numbers, counted through all bodies;
+ *                     NULL: a tool, for which `body` and `ldd` are ignored
+ * @param      ldd     >= dim
+ * @param      base    0 or 1: what `dof` counts from
+ * @param[out] surface number of the new surface, from 0
+ */
+int32_t feti_surface_add_i32(feti_problem *p, int64_t body, int32_t dim, int64_t nodes, const double *x,
+                             int64_t ldx, const int32_t *dof, int64_t ldd, int32_t base, int64_t *surface);
+
+/** As feti_surface_add_i32, with 64-bit indices. */
+int32_t feti_surface_add_i64(feti_problem *p, int64_t body, int32_t dim, int64_t nodes, const double *x,
+                             int64_t ldx, const int64_t *dof, int64_t ldd, int32_t base, int64_t *surface);
+
+/**
+ * Adds faces of one shape to a surface, with 32-bit indices.
+ *
+ * Seen from outside of the body the corners go round counterclockwise; in the plane the body is on the
+ * left of each line. The order of nodes is that of VTK: corners, then nodes on the edges, then the centre.
+ * Make one call for each shape: faces are numbered through all calls, from 0. A quadrilateral whose last
+ * corner is repeated is a triangle (of FETI_QUAD8 the node on the lost edge is that corner, too). Refused,
+ * with the number of the face: a node that does not exist or is twice in the face, a face without area (at
+ * most 1e-12 of the square of its longest edge), an edge that three faces share, two neighbours that
+ * disagree about which side is outside. Give both sides of a shell as two surfaces. FETI_STATE if a pair
+ * has the surface: faces come before pairs.
+ *
+ * @param surface number of the surface, from 0
+ * @param shape   FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8 or FETI_QUAD9, with
+ *                k = 2, 3, 3, 6, 4, 8, 9 nodes
+ * @param faces   number of faces
+ * @param node    (k * faces) nodes of the surface, face after face, counted from `base`
+ * @param base    0 or 1: what `node` counts from
+ */
+int32_t feti_surface_faces_i32(feti_problem *p, int64_t surface, int32_t shape, int64_t faces,
+                               const int32_t *node, int32_t base);
+
+/** As feti_surface_faces_i32, with 64-bit indices. */
+int32_t feti_surface_faces_i64(feti_problem *p, int64_t surface, int32_t shape, int64_t faces,
+                               const int64_t *node, int32_t base);
+
+/**
+ * Adds a rigid surface of a simple shape, which has no unknowns: a tool or a foundation. It can be the
+ * master of a pair.
+ *
+ * With a radius below 0 the shape is a hole: the slave is inside of it, and the normal points to the axis
+ * or centre. Directions need not have length 1.
+ *
+ * @param      dim     dimensions, 2 or 3; 3 for a cylinder
+ * @param      shape   FETI_PLANE, FETI_SPHERE (in the plane a circle) or FETI_CYLINDER
+ * @param      data    (k) plane: a point, the outward normal, k = 2 dim; sphere: the centre, the radius, k
+ *                     = dim + 1; cylinder: a point of the axis, its direction, the radius, k = 7; length
+ * @param[out] surface number of the new surface, from 0
+ */
+int32_t feti_surface_rigid(feti_problem *p, int32_t dim, int32_t shape, const double *data, int64_t *surface);
+
+/**
+ * Gives a surface new positions: of all its nodes, or new data of a rigid shape.
+ *
+ * Rows, gaps and the last answer do not change before the next feti_pairs_find. The unknowns u are then
+ * displacements from these positions. The call reads as many columns as the surface has nodes
+ * (feti_surface_counts).
+ *
+ * @param surface number of the surface, from 0
+ * @param x       (ldx * nodes) coordinates, the first dim numbers of each column, finite, length; for a
+ *                rigid surface its data, as in feti_surface_rigid
+ * @param ldx     >= dim; ignored for a rigid surface
+ */
+int32_t feti_surface_move(feti_problem *p, int64_t surface, const double *x, int64_t ldx);
+
+/**
+ * Reads the sizes of a surface.
+ *
+ * @param      surface number of the surface, from 0
+ * @param[out] dim     dimensions, 2 or 3; may be NULL
+ * @param[out] nodes   nodes, 0 for a rigid surface; may be NULL
+ * @param[out] faces   faces, 0 for a cloud of points and for a rigid surface; may be NULL
+ * @param[out] data    how many numbers describe a rigid surface, 0 for one with nodes; may be NULL
+ */
+int32_t feti_surface_counts(feti_problem *p, int64_t surface, int32_t *dim, int64_t *nodes, int64_t *faces,
+                            int64_t *data);
+
+/* ==== Pairs of surfaces ====
+ * Say which surfaces may meet, find where they meet, read pressures. */
+
+/** Method of a pair: a row between each slave node and the nearest point of the master. */
+#define FETI_NODE_TO_FACE 1
+/**
+ * Method of a pair: a row for each slave node with the gap that its faces have in the mean, weighted over
+ * the faces of both surfaces (mortar).
+ */
+#define FETI_MORTAR 2
+/** Added to the method of a pair: the surfaces are tied, by equality rows in all directions. */
+#define FETI_TIED 4
+/** Field of a pair, 1 number: contact force; of a tie the part along the normal, above 0 under pressure. */
+#define FETI_FORCE 1
+/** Field of a pair, 1 number: contact force per area. */
+#define FETI_PRESSURE 2
+/** Field of a pair, dim numbers: tangential force on the slave per area. */
+#define FETI_SHEAR 3
+/** Field of a pair, 1 number: open gap, length. */
+#define FETI_GAP 4
+/** Field of a pair, dim numbers: slip of the load step, length. */
+#define FETI_SLIP 5
+/** Field of a pair, 1 number: area of the node, length^2. */
+#define FETI_AREA 6
+/** Field of a pair, dim numbers: unit normal from slave to master. */
+#define FETI_NORMAL 7
+/** Field of a pair, 1 number: 0 open, 1 closed without friction, 2 sticks, 3 slips. */
+#define FETI_CLOSED 8
+
+/**
+ * What a pair of surfaces carries and where it is closed, by the last answer, and where it overlaps, at
+ * the present positions. Nodes are those of the surface, from 0. Without an answer forces and counts of
+ * states are 0.
+ */
+typedef struct feti_pair_facts {
+  /** Set by the caller: size of the struct in bytes. */
+  int64_t struct_size;
+  /** Slave nodes that have a row, or of a tie a row in each direction. */
+  int64_t rows;
+  /** Those of them that had no partner in the last find. */
+  int64_t without;
+  /** Nodes that are closed. */
+  int64_t closed;
+  /** Closed nodes that stick; of a tie all nodes with a partner. */
+  int64_t sticking;
+  /** Closed nodes that slip. */
+  int64_t slipping;
+  /** Force on the slave, force: the sum over all nodes. */
+  double force[3];
+  /** Moment of these forces about the origin at the present positions, force times length. */
+  double moment[3];
+  /** Sum of the areas of closed nodes, length^2. */
+  double closed_area;
+  /** Largest pressure, force per area; 0 if no node presses, or if the surface has no faces. */
+  double pressure;
+  /** Slave node with this pressure; -1: none. */
+  int64_t pressure_node;
+  /**
+   * Largest angle between the normal of a closed node and that of the master where it meets it, radian: 0
+   * by node-to-face; by mortar the force of this node has the wrong direction by so much.
+   */
+  double angle;
+  /** This node; -1: none. */
+  int64_t angle_node;
+  /** Deepest penetration of a slave node into the master, below its offset, length; 0: none. */
+  double depth;
+  /** This node; -1: none. */
+  int64_t depth_node;
+  /** Deepest penetration of a node of the master into the slave, length; 0: none. */
+  double master_depth;
+  /** This node of the master; -1: none. */
+  int64_t master_depth_node;
+  /**
+   * Nodes between two walls of the master, which have a row with only one of them: give the walls as two
+   * surfaces.
+   */
+  int64_t between_walls;
+  /** The first of these nodes; -1: none. */
+  int64_t between_walls_node;
+  /** Rows of the last find whose unknowns are all held; they are switched off. */
+  int64_t held;
+  /** Deepest overlap of these rows, length. */
+  double held_overlap;
+} feti_pair_facts;
+
+/**
+ * Adds a pair of surfaces that may meet: the nodes of the slave must not enter the master.
+ *
+ * The pair has one contact row for each slave node that is in a face (of a cloud for each node), in
+ * ascending order of nodes. A tie has an equality row for each direction of such a node instead: along the
+ * normal, then along the face. The numbers of the rows never change: pairs come before rows of the host
+ * (FETI_STATE, which names such a row), and feti_rows_clear leaves the rows of pairs. The rows have
+ * entries after feti_pairs_find; a node without partner has the gap +infinity and no entries.
+ * FETI_NODE_TO_FACE is for edges, corners and rigid obstacles; its pressures of a slave with FETI_LINE3,
+ * FETI_TRI6, FETI_QUAD8 or FETI_QUAD9 are wrong, however fine the mesh. FETI_MORTAR is for faces that lie
+ * on each other: pressures are right for all shapes. The slave should be the finer mesh. FETI_UNSUPPORTED
+ * if slave and master are one surface, and for a cloud of points by FETI_MORTAR.
+ *
+ * @param      slave    surface whose nodes get rows, from 0; it has unknowns
+ * @param      master   surface that they meet, from 0; it has faces or is rigid, with the dimensions of
+ *                      the slave
+ * @param      method   FETI_NODE_TO_FACE or FETI_MORTAR, with + FETI_TIED for a tie
+ * @param      distance > 0, finite, length: nodes up to this distance, outside or inside, have a partner;
+ *                      larger than the motion of a step
+ * @param[out] pair     number of the new pair, from 0
+ * @param[out] first    number of its first row among those of its kind, from 0; may be NULL
+ */
+int32_t feti_pair_add(feti_problem *p, int64_t slave, int64_t master, int32_t method, double distance,
+                      int64_t *pair, int64_t *first);
+
+/**
+ * Sets a number of a pair by its name; feti_pairs_find uses it.
+ *
+ * One number for all slave nodes, or one for each node of the slave surface (nodes in no face are
+ * ignored), with its default in brackets:
+ * - `friction` (0): coefficient of friction
+ * - `cohesion` (0): shear per area that acts at pressure 0
+ * - `offset` (0): length, subtracted from gaps: half the thickness of a shell, an interference, wear
+ * - `compliance` (0): length per pressure, by which the contact yields
+ *
+ * One number:
+ * - `adjust` (0): length; gaps of the first find up to this size count as 0, so that faceted meshes cause
+ *   no strain
+ * - `on` (1): 0 opens all rows of the pair, a tie demands nothing
+ * - `angle` (100): degrees; smallest angle between the outward normals of a node and its partner
+ * - `depth` (`distance` of feti_pair_add): length; deepest penetration that is believed
+ * - `thickness` (1): of a problem in the plane, length
+ * - `axisymmetric` (0): 1: the area is `thickness` (2 pi or 1, as in K) times the first coordinate
+ *
+ * The first coefficient or cohesion above 0 gives all nodes of the pair friction. FETI_STATE if the host
+ * has added nodes with friction before; FETI_UNSUPPORTED for `cohesion` or `compliance` of a cloud, which
+ * has no areas, and for `friction` or `cohesion` of a tie.
+ *
+ * @param pair  number of the pair, from 0
+ * @param name  (text) one of the names above
+ * @param n     1, or the nodes of the slave surface
+ * @param value (n) finite; >= 0 except for `offset`
+ */
+int32_t feti_pair_set_f64(feti_problem *p, int64_t pair, const char *name, int64_t n, const double *value);
+
+/**
+ * Finds the partners of all slave nodes at the present positions, where u = 0, and makes the rows of all
+ * pairs.
+ *
+ * Entries, gaps, tangential rows, areas and slips since the beginning of the step are replaced. Forces and
+ * states stay with their nodes: the next solve starts from them if option start is previous. A node whose
+ * foot was inside a face keeps this face up to 2 % of the edge beyond it, until feti_pairs_commit. Two
+ * calls at the same positions make the same rows, bit by bit, and keep the last answer. A tie finds its
+ * points once: later calls measure what has opened since, so that an initial gap is kept. Rows whose
+ * unknowns are all held are switched off; if one of them overlaps by more than 1e-9 of the size of the
+ * slave, the call returns FETI_GAPS_CONTRADICT and names pair and node. FETI_STATE if a node with
+ * `compliance` has lost its area. The log has a line for each pair. After a failure, and after feti_cancel
+ * (FETI_CANCELLED), the rows are those of the last find.
+ */
+int32_t feti_pairs_find(feti_problem *p);
+
+/**
+ * Begins the next load step at the present positions of all surfaces: slips count from here, and nodes
+ * keep no faces.
+ *
+ * The first step begins at the positions of feti_pair_add. Call this function once for each load step,
+ * before the surfaces move; without it slips count from the beginning of the analysis.
+ */
+int32_t feti_pairs_commit(feti_problem *p);
+
+/**
+ * Reads a field of a pair at the nodes of the slave surface, in the order of these nodes; 0 where a node
+ * has no partner.
+ *
+ * FETI_SHEAR, FETI_SLIP and FETI_NORMAL have dim numbers for each node, all others one number. Without
+ * faces there are no areas, and pressure and shear are 0. FETI_STATE without an answer, except for
+ * FETI_AREA and FETI_NORMAL, which the last find has.
+ *
+ * @param      pair   number of the pair, from 0
+ * @param      field  FETI_FORCE, FETI_PRESSURE, FETI_SHEAR, FETI_GAP, FETI_SLIP, FETI_AREA, FETI_NORMAL or
+ *                    FETI_CLOSED
+ * @param      n      numbers of the field: nodes of the slave surface, or dim times as many
+ * @param[out] values (n) node after node
+ */
+int32_t feti_pair_field(feti_problem *p, int64_t pair, int32_t field, int64_t n, double *values);
+
+/**
+ * Reads what a pair carries and where it is closed, by the last answer, and where it overlaps, at the
+ * present positions.
+ *
+ * Without an answer forces and states are 0. The call finds the partners anew to see the overlap; it
+ * changes nothing.
+ *
+ * @param         pair number of the pair, from 0
+ * @param[in,out] out  `struct_size` set, at least 16
+ */
+int32_t feti_pair_info(feti_problem *p, int64_t pair, feti_pair_facts *out);
 
 /* ==== Options ====
  * Set tolerance, threads, method and limits, by name. */
@@ -1379,9 +1708,9 @@ int32_t feti_body_values_dense(feti_problem *p, int64_t body, int64_t n, const d
 /**
  * Removes all rows of a kind.
  *
- * The numbering of that kind starts again at 0. Removing the inequality rows also removes all nodes with
- * friction (feti_friction_clear), because they refer to contact rows. The factors of the bodies stay
- * valid.
+ * Rows of pairs (feti_pair_add) stay; the numbering of that kind starts again behind them, at 0 without
+ * pairs. Removing the inequality rows also removes all nodes with friction (feti_friction_clear), because
+ * they refer to contact rows. The factors of the bodies stay valid.
  *
  * @param kind FETI_INEQUALITY or FETI_EQUALITY
  */
@@ -1390,9 +1719,9 @@ int32_t feti_rows_clear(feti_problem *p, int32_t kind);
 /**
  * Removes all nodes with friction; their contact rows stay.
  *
- * The numbering starts again at 0, and new nodes may have another dim. feti_rows_clear with
- * FETI_INEQUALITY also removes the nodes. The factors of the bodies stay valid; the last answer is
- * dropped.
+ * Nodes of pairs (feti_pair_add) stay. The numbering starts again behind them, at 0 without them, and new
+ * nodes may have another dim. feti_rows_clear with FETI_INEQUALITY also removes the nodes. The factors of
+ * the bodies stay valid; the last answer is dropped.
  */
 int32_t feti_friction_clear(feti_problem *p);
 
@@ -1405,9 +1734,10 @@ int32_t feti_friction_clear(feti_problem *p);
  * Collective: all ranks that have a part of the problem make the call (feti_communicator_set), and get the
  * same number.
  *
- * For nodes with friction the state has the laws, the compliances and s_old. Factors are not copied and
- * the entries of the rows are shared, so a state costs no more memory than its vectors. A state exists
- * until it is dropped or the problem is destroyed; its number is never used again.
+ * For nodes with friction the state has the laws, the compliances and s_old. Of surfaces it has the
+ * positions, of pairs their numbers and what the nodes have met. Factors are not copied and the entries of
+ * the rows are shared, so a state costs no more memory than its vectors. A state exists until it is
+ * dropped or the problem is destroyed; its number is never used again.
  *
  * @param[out] id number of the state, from 0
  */
@@ -1420,11 +1750,12 @@ int32_t feti_state_save(feti_problem *p, int64_t *id);
  * same number.
  *
  * The call restores loads, rows with right-hand sides and compliances, and nodes with friction with laws
- * and s_old. It also restores the answer unless a matrix or the rows have changed since the state was
- * saved. With option start = previous the next solve continues from the saved multipliers; with start =
- * cold it gives the same bits as it would have given at the time of saving. Matrices, null spaces and
- * options keep their current values; unused start values are dropped. The state stays saved. FETI_STATE if
- * bodies were added since the state was saved; after a failure nothing is changed.
+ * and s_old, positions of surfaces and pairs. It also restores the answer unless a matrix or the rows have
+ * changed since the state was saved. With option start = previous the next solve continues from the saved
+ * multipliers; with start = cold it gives the same bits as it would have given at the time of saving.
+ * Matrices, null spaces and options keep their current values; unused start values are dropped. The state
+ * stays saved. FETI_STATE if bodies, surfaces or pairs were added since the state was saved; after a
+ * failure nothing is changed.
  *
  * @param id number of the state, from 0
  */
@@ -1505,6 +1836,10 @@ typedef struct feti_findings {
   double capacity;
   /** Rank that has given `body` or `row`, if several ranks have given some; -1: does not apply. */
   int64_t rank;
+  /** Pair of surfaces to which `row` belongs; -1: none. */
+  int64_t pair;
+  /** Slave node of this row, in its surface; -1: none. */
+  int64_t pair_node;
 } feti_findings;
 
 /**
@@ -1949,6 +2284,10 @@ typedef struct feti_certificate {
   int64_t friction_work_rank;
   /** Rank of the node with the worst slip. */
   int64_t friction_stick_rank;
+  /** Pair of surfaces to which the row or node with the largest ratio `worst` belongs, from 0; -1: none. */
+  int64_t pair;
+  /** Slave node of this row, in its surface, from 0; -1: none. */
+  int64_t pair_node;
 } feti_certificate;
 
 /**
@@ -2141,7 +2480,7 @@ typedef struct feti_communicator {
  * an exception, nor call the library for a problem whose table has the same `user`. With one rank it calls
  * none. If bodies have numbers, they and the rows are taken in the order that they have on several ranks.
  *
- * FETI_STATE if the problem has a body or a table already.
+ * FETI_STATE if the problem has a body, a surface or a table already.
  *
  * @param by the table, as feti_communicator describes it
  */
@@ -2240,10 +2579,17 @@ typedef struct feti_error_detail {
   char function[40];
   /** Element of the body; -1: does not apply. */
   int64_t element;
-  /** Node with friction; -1: does not apply. */
+  /**
+   * Node with friction; with `pair` or `face`, or if a surface is refused, a node of the surface; -1: does
+   * not apply.
+   */
   int64_t node;
   /** Rank whose numbers these are, if several have given bodies or rows; -1: does not apply. */
   int64_t rank;
+  /** Pair of surfaces; -1: does not apply. */
+  int64_t pair;
+  /** Face of the surface; -1: does not apply. */
+  int64_t face;
 } feti_error_detail;
 
 /**

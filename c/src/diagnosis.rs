@@ -289,5 +289,7 @@ fn described(from: &Findings) -> feti_findings {
         soft_body: known(from.soft.first().copied()),
         capacity: from.capacity.unwrap_or(f64::NAN),
         rank: known(from.place.rank),
+        pair: known(from.place.pair),
+        pair_node: known(from.place.pair.and(from.place.node)),
     }
 }

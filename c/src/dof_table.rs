@@ -15,7 +15,7 @@ twins! {
     /// Newton loop subtracts from its residual. The forces of the supports stay with the host. In an increment, `constant` is what is left to
     /// go: the prescribed minus the present value.
     ///
-    /// Another call replaces the table: the rows follow. With other constants alone, only right-hand sides change. FETI_STATE from
+    /// Another call replaces the table: the rows follow, also those of pairs of surfaces. With other constants alone, only right-hand sides change. FETI_STATE from
     /// feti_body_add and feti_body_numbering_i32 after this call. On several ranks the table names unknowns of its rank.
     ///
     /// | argument | in/out | shape | rule |

@@ -196,7 +196,7 @@ pub extern "C" fn feti_friction_commit(p: *mut feti_problem) -> i32 {
 
 /// Removes all nodes with friction; their contact rows stay.
 ///
-/// The numbering starts again at 0, and new nodes may have another dim. feti_rows_clear with FETI_INEQUALITY also removes
+/// Nodes of pairs (feti_pair_add) stay. The numbering starts again behind them, at 0 without them, and new nodes may have another dim. feti_rows_clear with FETI_INEQUALITY also removes
 /// the nodes. The factors of the bodies stay valid; the last answer is dropped.
 ///
 /// | argument | in/out | shape | rule |

@@ -6,7 +6,7 @@
 //! | `boundary/` | frame of every call: handles, panics, errors, arrays of the host |
 //! | `bodies/` | the functions of bodies |
 //! | `reserve` | memory for calls during which a malloc of the host fails |
-//! | `problem`, `file`, `options`, `rows`, `friction`, `solve`, `phases`, `ranks`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the other functions |
+//! | `problem`, `file`, `options`, `rows`, `friction`, `surfaces`, `pairs`, `solve`, `phases`, `ranks`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the other functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of its
 //! arguments; if a rule contains the word NULL, the pointer may be NULL.
@@ -23,6 +23,7 @@ mod friction;
 mod header;
 mod log;
 mod options;
+mod pairs;
 mod phases;
 mod problem;
 mod progress;
@@ -33,6 +34,7 @@ mod results;
 mod rows;
 mod solve;
 mod state;
+mod surfaces;
 mod validation;
 
 #[cfg(test)]
@@ -48,6 +50,7 @@ pub use header::status::*;
 pub use header::types::*;
 pub use log::*;
 pub use options::*;
+pub use pairs::*;
 pub use phases::*;
 pub use problem::*;
 pub use progress::*;
@@ -56,4 +59,5 @@ pub use results::*;
 pub use rows::*;
 pub use solve::*;
 pub use state::*;
+pub use surfaces::*;
 pub use validation::*;

@@ -27,7 +27,7 @@ use feti_contact::solver::{serve, Link, Rank, Ranks};
 /// whose table has the same `user`. With one rank it calls none. If bodies have numbers, they and the rows are taken in
 /// the order that they have on several ranks.
 ///
-/// FETI_STATE if the problem has a body or a table already.
+/// FETI_STATE if the problem has a body, a surface or a table already.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -124,7 +124,7 @@ pub unsafe extern "C" fn feti_rows_compliance(
 
 /// Removes all rows of a kind.
 ///
-/// The numbering of that kind starts again at 0. Removing the inequality rows also removes all nodes with friction
+/// Rows of pairs (feti_pair_add) stay; the numbering of that kind starts again behind them, at 0 without pairs. Removing the inequality rows also removes all nodes with friction
 /// (feti_friction_clear), because they refer to contact rows. The factors of the bodies stay valid.
 ///
 /// | argument | in/out | shape | rule |

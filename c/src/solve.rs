@@ -135,7 +135,8 @@ pub unsafe extern "C" fn feti_check(
             let target = unsafe { OutStruct::new(out, "out") }?;
             Ok((answer, target, problem.working_headroom()?))
         })?;
-        target.write(&certificate(&problem.check(u, lambda, mu)?));
+        let found = problem.check(u, lambda, mu)?;
+        target.write(&certificate(problem, &found));
         Ok(())
     })
 }
@@ -192,7 +193,8 @@ pub unsafe extern "C" fn feti_check_friction(
                 let target = unsafe { OutStruct::new(out, "out") }?;
                 Ok((answer, tangential, target, problem.working_headroom()?))
             })?;
-        target.write(&certificate(&problem.check_with_friction(Candidate { u, lambda, mu, tangential })?));
+        let found = problem.check_with_friction(Candidate { u, lambda, mu, tangential })?;
+        target.write(&certificate(problem, &found));
         Ok(())
     })
 }
@@ -280,7 +282,8 @@ fn info_of(
     }
 }
 
-fn certificate(from: &Certificate) -> feti_certificate {
+fn certificate(problem: &Problem, from: &Certificate) -> feti_certificate {
+    let pair = problem.worst_pair(from);
     let rank = |entry: &Entry| known(entry.place.map(|_| entry.rank));
     feti_certificate {
         struct_size: size_of::<feti_certificate>() as i64,
@@ -316,5 +319,7 @@ fn certificate(from: &Certificate) -> feti_certificate {
         friction_cone_rank: rank(&from.friction_cone),
         friction_work_rank: rank(&from.friction_work),
         friction_stick_rank: rank(&from.friction_stick),
+        pair: known(pair.map(|(pair, _)| pair)),
+        pair_node: known(pair.map(|(_, node)| node)),
     }
 }

@@ -41,7 +41,8 @@ pub unsafe extern "C" fn feti_start_from(
 ///
 /// Collective: all ranks that have a part of the problem make the call (feti_communicator_set), and get the same number.
 ///
-/// For nodes with friction the state has the laws, the compliances and s_old. Factors are not copied and the entries of
+/// For nodes with friction the state has the laws, the compliances and s_old. Of surfaces it has the positions, of pairs their numbers and what
+/// the nodes have met. Factors are not copied and the entries of
 /// the rows are shared, so a state costs no more memory than its vectors. A state exists until it is dropped or the
 /// problem is destroyed; its number is never used again.
 ///
@@ -66,11 +67,11 @@ pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> 
 ///
 /// Collective: all ranks that have a part of the problem make the call (feti_communicator_set), with the same number.
 ///
-/// The call restores loads, rows with right-hand sides and compliances, and nodes with friction with laws and s_old. It
-/// also restores the answer unless a matrix or the rows have changed since the state was saved. With option start =
+/// The call restores loads, rows with right-hand sides and compliances, and nodes with friction with laws and s_old,
+/// positions of surfaces and pairs. It also restores the answer unless a matrix or the rows have changed since the state was saved. With option start =
 /// previous the next solve continues from the saved multipliers; with start = cold it gives the same bits as it would
 /// have given at the time of saving. Matrices, null spaces and options keep their current values; unused start values are
-/// dropped. The state stays saved. FETI_STATE if bodies were added since the state was saved; after a failure nothing is
+/// dropped. The state stays saved. FETI_STATE if bodies, surfaces or pairs were added since the state was saved; after a failure nothing is
 /// changed.
 ///
 /// | argument | in/out | shape | rule |

@@ -27,16 +27,18 @@
 !> text and stops the program. The module of each procedure, named below, describes it with shapes and units.
 module feti_contact
   use feti_contact_c, only: FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_COPY, FETI_BORROW, FETI_ALL, FETI_EXACT, &
-    FETI_CANDIDATES, FETI_SOFT, FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, FETI_OPTION_F64, FETI_OPTION_I64, &
-    FETI_OPTION_STR, FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_ROW_UNKNOWN, FETI_FRICTION_OPEN, &
-    FETI_FRICTION_STICK, FETI_FRICTION_SLIP, FETI_FRICTION_WEAK, FETI_FRICTION_UNKNOWN, FETI_ORIGIN_EXACT, &
-    FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_FOUND, FETI_PHASE_SETUP, FETI_PHASE_SOLVE, &
-    FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, FETI_STEP_NEWTON, FETI_LOG_NONE, &
-    FETI_LOG_RESULT, FETI_LOG_PHASE, FETI_LOG_STEP, FETI_OK, FETI_ITERATIONS, FETI_TIME, FETI_CANCELLED, FETI_STALLED, &
-    FETI_INACCURATE, FETI_MARGINAL, FETI_MEMORY, FETI_HANDLE, FETI_BUSY, FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, &
-    FETI_GAPS_CONTRADICT, FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, &
-    FETI_SLIDES, FETI_COMMUNICATION, FETI_ARGUMENT, FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, &
-    FETI_CONTACT_VERSION_PATCH
+    FETI_CANDIDATES, FETI_SOFT, FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, FETI_LINE2, FETI_LINE3, FETI_TRI3, &
+    FETI_TRI6, FETI_QUAD4, FETI_QUAD8, FETI_QUAD9, FETI_PLANE, FETI_SPHERE, FETI_CYLINDER, FETI_NODE_TO_FACE, &
+    FETI_MORTAR, FETI_TIED, FETI_FORCE, FETI_PRESSURE, FETI_SHEAR, FETI_GAP, FETI_SLIP, FETI_AREA, FETI_NORMAL, &
+    FETI_CLOSED, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, &
+    FETI_ROW_UNKNOWN, FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP, FETI_FRICTION_WEAK, &
+    FETI_FRICTION_UNKNOWN, FETI_ORIGIN_EXACT, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_FOUND, &
+    FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, &
+    FETI_STEP_NEWTON, FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE, FETI_LOG_STEP, FETI_OK, FETI_ITERATIONS, &
+    FETI_TIME, FETI_CANCELLED, FETI_STALLED, FETI_INACCURATE, FETI_MARGINAL, FETI_MEMORY, FETI_HANDLE, FETI_BUSY, &
+    FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, FETI_GAPS_CONTRADICT, FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, &
+    FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_SLIDES, FETI_COMMUNICATION, FETI_ARGUMENT, &
+    FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, FETI_CONTACT_VERSION_PATCH
   use feti_contact_bodies, only: feti_body_facts, feti_body_add => body_add, feti_body_null_space => body_null_space, &
     feti_body_no_null_space => body_no_null_space, feti_body_coordinates => body_coordinates, &
     feti_body_coordinates_flags => body_coordinates_flags, feti_body_load => body_load, feti_body_numbering => body_numbering, &
@@ -56,6 +58,10 @@ module feti_contact
     feti_friction_compliance => friction_compliance, feti_friction_reference => friction_reference, &
     feti_friction_commit => friction_commit, feti_friction_counts => friction_counts, feti_friction_slips => friction_slips, &
     feti_friction_states => friction_states, feti_friction_clear => friction_clear
+  use feti_contact_surfaces, only: feti_surface_add => surface_add, feti_surface_faces => surface_faces, &
+    feti_surface_rigid => surface_rigid, feti_surface_move => surface_move, feti_surface_counts => surface_counts
+  use feti_contact_pairs, only: feti_pair_facts, feti_pair_add => pair_add, feti_pair_set => pair_set, &
+    feti_pairs_find => pairs_find, feti_pairs_commit => pairs_commit, feti_pair_field => pair_field, feti_pair_info => pair_info
   use feti_contact_states, only: feti_findings, feti_start_from => start_from, feti_state_save => state_save, &
     feti_state_restore => state_restore, feti_state_drop => state_drop, feti_diagnosis => diagnosis, &
     feti_diagnosis_undetermined_motion => diagnosis_undetermined_motion, feti_diagnosis_motion => diagnosis_motion, &

@@ -116,8 +116,8 @@ module feti_contact_base
     real(c_double) :: value = 0, limit = 0
     !> Name of the C function, blank padded.
     character(len=40) :: function = ''
-    !> Element of the body, node with friction; 0: does not apply.
-    integer(c_int64_t) :: element = 0, node = 0
+    !> Element of the body, node with friction or of a surface, pair of surfaces, face of a surface; 0: does not apply.
+    integer(c_int64_t) :: element = 0, node = 0, pair = 0, face = 0
   end type
 
 contains
@@ -238,6 +238,8 @@ contains
       detail%function = f_text(c_loc(found%function))
       detail%element = found%element + 1
       detail%node = found%node + 1
+      detail%pair = found%pair + 1
+      detail%face = found%face + 1
     end if
     call finish(status, stat, errmsg)
   end subroutine

@@ -466,6 +466,249 @@ module feti_contact_c
     end function
   end interface
 
+  ! ==== Surfaces ====
+  ! Give surfaces with positions and faces, in place of rows of your own.
+
+  !> Shape of a face in the plane: a line with 2 nodes. Corners come first, then the nodes on the edges, then the one in
+  !> the centre, as in VTK.
+  integer(c_int32_t), parameter :: FETI_LINE2 = 1_c_int32_t
+  !> Shape of a face in the plane: a line with 3 nodes, the last in the middle.
+  integer(c_int32_t), parameter :: FETI_LINE3 = 2_c_int32_t
+  !> Shape of a face in space: a triangle with 3 nodes.
+  integer(c_int32_t), parameter :: FETI_TRI3 = 3_c_int32_t
+  !> Shape of a face in space: a triangle with 6 nodes.
+  integer(c_int32_t), parameter :: FETI_TRI6 = 4_c_int32_t
+  !> Shape of a face in space: a quadrilateral with 4 nodes.
+  integer(c_int32_t), parameter :: FETI_QUAD4 = 5_c_int32_t
+  !> Shape of a face in space: a quadrilateral with 8 nodes.
+  integer(c_int32_t), parameter :: FETI_QUAD8 = 6_c_int32_t
+  !> Shape of a face in space: a quadrilateral with 9 nodes.
+  integer(c_int32_t), parameter :: FETI_QUAD9 = 7_c_int32_t
+  !> Shape of a rigid surface: a plane; data: a point, the outward normal.
+  integer(c_int32_t), parameter :: FETI_PLANE = 11_c_int32_t
+  !> Shape of a rigid surface: a sphere, in the plane a circle; data: the centre, the radius.
+  integer(c_int32_t), parameter :: FETI_SPHERE = 12_c_int32_t
+  !> Shape of a rigid surface in space: a cylinder without ends; data: a point of the axis, its direction, the radius.
+  integer(c_int32_t), parameter :: FETI_CYLINDER = 13_c_int32_t
+
+  interface
+    !> Adds a surface over nodes of a mesh, with 32-bit indices.
+    integer(c_int32_t) function feti_surface_add_i32(p, body, dim, nodes, x, ldx, dof, ldd, base, surface) bind(C, &
+      name="feti_surface_add_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int32_t), value :: dim
+      integer(c_int64_t), value :: nodes
+      real(c_double), intent(in) :: x(*)
+      integer(c_int64_t), value :: ldx
+      type(c_ptr), value :: dof
+      integer(c_int64_t), value :: ldd
+      integer(c_int32_t), value :: base
+      integer(c_int64_t), intent(out) :: surface
+    end function
+
+    !> As feti_surface_add_i32, with 64-bit indices.
+    integer(c_int32_t) function feti_surface_add_i64(p, body, dim, nodes, x, ldx, dof, ldd, base, surface) bind(C, &
+      name="feti_surface_add_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int32_t), value :: dim
+      integer(c_int64_t), value :: nodes
+      real(c_double), intent(in) :: x(*)
+      integer(c_int64_t), value :: ldx
+      type(c_ptr), value :: dof
+      integer(c_int64_t), value :: ldd
+      integer(c_int32_t), value :: base
+      integer(c_int64_t), intent(out) :: surface
+    end function
+
+    !> Adds faces of one shape to a surface, with 32-bit indices.
+    integer(c_int32_t) function feti_surface_faces_i32(p, surface, shape, faces, node, base) bind(C, &
+      name="feti_surface_faces_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: surface
+      integer(c_int32_t), value :: shape
+      integer(c_int64_t), value :: faces
+      integer(c_int32_t), intent(in) :: node(*)
+      integer(c_int32_t), value :: base
+    end function
+
+    !> As feti_surface_faces_i32, with 64-bit indices.
+    integer(c_int32_t) function feti_surface_faces_i64(p, surface, shape, faces, node, base) bind(C, &
+      name="feti_surface_faces_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: surface
+      integer(c_int32_t), value :: shape
+      integer(c_int64_t), value :: faces
+      integer(c_int64_t), intent(in) :: node(*)
+      integer(c_int32_t), value :: base
+    end function
+
+    !> Adds a rigid surface of a simple shape, which has no unknowns: a tool or a foundation. It can be the master of a
+    !> pair.
+    integer(c_int32_t) function feti_surface_rigid(p, dim, shape, data, surface) bind(C, name="feti_surface_rigid")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t), value :: dim, shape
+      real(c_double), intent(in) :: data(*)
+      integer(c_int64_t), intent(out) :: surface
+    end function
+
+    !> Gives a surface new positions: of all its nodes, or new data of a rigid shape.
+    integer(c_int32_t) function feti_surface_move(p, surface, x, ldx) bind(C, name="feti_surface_move")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: surface
+      real(c_double), intent(in) :: x(*)
+      integer(c_int64_t), value :: ldx
+    end function
+
+    !> Reads the sizes of a surface.
+    integer(c_int32_t) function feti_surface_counts(p, surface, dim, nodes, faces, data) bind(C, &
+      name="feti_surface_counts")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: surface
+      type(c_ptr), value :: dim, nodes, faces, data
+    end function
+  end interface
+
+  ! ==== Pairs of surfaces ====
+  ! Say which surfaces may meet, find where they meet, read pressures.
+
+  !> Method of a pair: a row between each slave node and the nearest point of the master.
+  integer(c_int32_t), parameter :: FETI_NODE_TO_FACE = 1_c_int32_t
+  !> Method of a pair: a row for each slave node with the gap that its faces have in the mean, weighted over the faces
+  !> of both surfaces (mortar).
+  integer(c_int32_t), parameter :: FETI_MORTAR = 2_c_int32_t
+  !> Added to the method of a pair: the surfaces are tied, by equality rows in all directions.
+  integer(c_int32_t), parameter :: FETI_TIED = 4_c_int32_t
+  !> Field of a pair, 1 number: contact force; of a tie the part along the normal, above 0 under pressure.
+  integer(c_int32_t), parameter :: FETI_FORCE = 1_c_int32_t
+  !> Field of a pair, 1 number: contact force per area.
+  integer(c_int32_t), parameter :: FETI_PRESSURE = 2_c_int32_t
+  !> Field of a pair, dim numbers: tangential force on the slave per area.
+  integer(c_int32_t), parameter :: FETI_SHEAR = 3_c_int32_t
+  !> Field of a pair, 1 number: open gap, length.
+  integer(c_int32_t), parameter :: FETI_GAP = 4_c_int32_t
+  !> Field of a pair, dim numbers: slip of the load step, length.
+  integer(c_int32_t), parameter :: FETI_SLIP = 5_c_int32_t
+  !> Field of a pair, 1 number: area of the node, length^2.
+  integer(c_int32_t), parameter :: FETI_AREA = 6_c_int32_t
+  !> Field of a pair, dim numbers: unit normal from slave to master.
+  integer(c_int32_t), parameter :: FETI_NORMAL = 7_c_int32_t
+  !> Field of a pair, 1 number: 0 open, 1 closed without friction, 2 sticks, 3 slips.
+  integer(c_int32_t), parameter :: FETI_CLOSED = 8_c_int32_t
+
+  !> What a pair of surfaces carries and where it is closed, by the last answer, and where it overlaps, at the present
+  !> positions. Nodes are those of the surface, from 0. Without an answer forces and counts of states are 0.
+  type, bind(C) :: feti_pair_facts
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Slave nodes that have a row, or of a tie a row in each direction.
+    integer(c_int64_t) :: rows
+    !> Those of them that had no partner in the last find.
+    integer(c_int64_t) :: without
+    !> Nodes that are closed.
+    integer(c_int64_t) :: closed
+    !> Closed nodes that stick; of a tie all nodes with a partner.
+    integer(c_int64_t) :: sticking
+    !> Closed nodes that slip.
+    integer(c_int64_t) :: slipping
+    !> Force on the slave, force: the sum over all nodes.
+    real(c_double) :: force(3)
+    !> Moment of these forces about the origin at the present positions, force times length.
+    real(c_double) :: moment(3)
+    !> Sum of the areas of closed nodes, length^2.
+    real(c_double) :: closed_area
+    !> Largest pressure, force per area; 0 if no node presses, or if the surface has no faces.
+    real(c_double) :: pressure
+    !> Slave node with this pressure; -1: none.
+    integer(c_int64_t) :: pressure_node
+    !> Largest angle between the normal of a closed node and that of the master where it meets it, radian: 0 by
+    !> node-to-face; by mortar the force of this node has the wrong direction by so much.
+    real(c_double) :: angle
+    !> This node; -1: none.
+    integer(c_int64_t) :: angle_node
+    !> Deepest penetration of a slave node into the master, below its offset, length; 0: none.
+    real(c_double) :: depth
+    !> This node; -1: none.
+    integer(c_int64_t) :: depth_node
+    !> Deepest penetration of a node of the master into the slave, length; 0: none.
+    real(c_double) :: master_depth
+    !> This node of the master; -1: none.
+    integer(c_int64_t) :: master_depth_node
+    !> Nodes between two walls of the master, which have a row with only one of them: give the walls as two surfaces.
+    integer(c_int64_t) :: between_walls
+    !> The first of these nodes; -1: none.
+    integer(c_int64_t) :: between_walls_node
+    !> Rows of the last find whose unknowns are all held; they are switched off.
+    integer(c_int64_t) :: held
+    !> Deepest overlap of these rows, length.
+    real(c_double) :: held_overlap
+  end type
+
+  interface
+    !> Adds a pair of surfaces that may meet: the nodes of the slave must not enter the master.
+    integer(c_int32_t) function feti_pair_add(p, slave, master, method, distance, pair, first) bind(C, &
+      name="feti_pair_add")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: slave, master
+      integer(c_int32_t), value :: method
+      real(c_double), value :: distance
+      integer(c_int64_t), intent(out) :: pair
+      type(c_ptr), value :: first
+    end function
+
+    !> Sets a number of a pair by its name; feti_pairs_find uses it.
+    integer(c_int32_t) function feti_pair_set_f64(p, pair, name, n, value) bind(C, name="feti_pair_set_f64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: pair
+      character(kind=c_char), intent(in) :: name(*)
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: value(*)
+    end function
+
+    !> Finds the partners of all slave nodes at the present positions, where u = 0, and makes the rows of all pairs.
+    integer(c_int32_t) function feti_pairs_find(p) bind(C, name="feti_pairs_find")
+      import
+      type(c_ptr), value :: p
+    end function
+
+    !> Begins the next load step at the present positions of all surfaces: slips count from here, and nodes keep no
+    !> faces.
+    integer(c_int32_t) function feti_pairs_commit(p) bind(C, name="feti_pairs_commit")
+      import
+      type(c_ptr), value :: p
+    end function
+
+    !> Reads a field of a pair at the nodes of the slave surface, in the order of these nodes; 0 where a node has no
+    !> partner.
+    integer(c_int32_t) function feti_pair_field(p, pair, field, n, values) bind(C, name="feti_pair_field")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: pair
+      integer(c_int32_t), value :: field
+      integer(c_int64_t), value :: n
+      real(c_double), intent(out) :: values(*)
+    end function
+
+    !> Reads what a pair carries and where it is closed, by the last answer, and where it overlaps, at the present
+    !> positions.
+    integer(c_int32_t) function feti_pair_info(p, pair, out) bind(C, name="feti_pair_info")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: pair
+      type(feti_pair_facts), intent(inout) :: out
+    end function
+  end interface
+
   ! ==== Options ====
   ! Set tolerance, threads, method and limits, by name.
 
@@ -964,6 +1207,10 @@ module feti_contact_c
     real(c_double) :: capacity
     !> Rank that has given `body` or `row`, if several ranks have given some; -1: does not apply.
     integer(c_int64_t) :: rank
+    !> Pair of surfaces to which `row` belongs; -1: none.
+    integer(c_int64_t) :: pair
+    !> Slave node of this row, in its surface; -1: none.
+    integer(c_int64_t) :: pair_node
   end type
 
   interface
@@ -1303,6 +1550,10 @@ module feti_contact_c
     integer(c_int64_t) :: friction_work_rank
     !> Rank of the node with the worst slip.
     integer(c_int64_t) :: friction_stick_rank
+    !> Pair of surfaces to which the row or node with the largest ratio `worst` belongs, from 0; -1: none.
+    integer(c_int64_t) :: pair
+    !> Slave node of this row, in its surface, from 0; -1: none.
+    integer(c_int64_t) :: pair_node
   end type
 
   interface
@@ -1493,10 +1744,14 @@ module feti_contact_c
     character(kind=c_char) :: function(40)
     !> Element of the body; -1: does not apply.
     integer(c_int64_t) :: element
-    !> Node with friction; -1: does not apply.
+    !> Node with friction; with `pair` or `face`, or if a surface is refused, a node of the surface; -1: does not apply.
     integer(c_int64_t) :: node
     !> Rank whose numbers these are, if several have given bodies or rows; -1: does not apply.
     integer(c_int64_t) :: rank
+    !> Pair of surfaces; -1: does not apply.
+    integer(c_int64_t) :: pair
+    !> Face of the surface; -1: does not apply.
+    integer(c_int64_t) :: face
   end type
 
   interface

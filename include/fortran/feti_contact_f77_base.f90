@@ -35,6 +35,10 @@ module feti_contact_f77_base
     procedure feti_dof_table_i32, feti_dof_table_i64
   end interface
   !> For index arrays of the host.
+  interface feti_surface_faces
+    procedure feti_surface_faces_i32, feti_surface_faces_i64
+  end interface
+  !> For index arrays of the host.
   interface feti_rows_add
     procedure feti_rows_add_i32, feti_rows_add_i64
   end interface
@@ -187,11 +191,28 @@ contains
     if (present) reals = c_loc(x(1))
   end function
 
-  !> Address of an array of the host.
-  recursive type(c_ptr) function integers(i)
+  !> Address of an array of the host, NULL if it is absent.
+  recursive type(c_ptr) function integers(i, present)
     integer, intent(in), target :: i(*)
+    logical, intent(in) :: present
 
-    integers = c_loc(i(1))
+    integers = c_null_ptr
+    if (present) integers = c_loc(i(1))
+  end function
+
+  !> For index arrays of the host: dof is an address, which tells no interface the size of the numbers.
+  recursive integer(c_int32_t) function feti_surface_add(p, body, dim, nodes, x, ldx, dof, ldd, base, surface)
+    type(c_ptr), intent(in) :: p, dof
+    integer(c_int64_t), intent(in) :: body, nodes, ldx, ldd
+    integer(c_int32_t), intent(in) :: dim, base
+    real(c_double), intent(in) :: x(*)
+    integer(c_int64_t), intent(inout) :: surface
+
+    if (kind(base) == kind(1)) then
+      feti_surface_add = feti_surface_add_i32(p, body, dim, nodes, x, ldx, dof, ldd, base, surface)
+    else
+      feti_surface_add = feti_surface_add_i64(p, body, dim, nodes, x, ldx, dof, ldd, base, surface)
+    end if
   end function
 
   !> Text of the last error of this thread, padded with blanks or truncated; blank if ierr is not its status, as for

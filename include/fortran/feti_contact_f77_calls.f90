@@ -51,7 +51,8 @@ recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   ierr = told(feti_last_error_detail(found))
   if (ierr < FETI_OK) return
   call give([int(found%status, c_int64_t), int(found%argument, c_int64_t), found%body + 1, found%component + 1, &
-    found%dof + 1, found%row + 1, found%entry + 1, found%element + 1, found%node + 1, found%rank], ni, idet)
+    found%dof + 1, found%row + 1, found%entry + 1, found%element + 1, found%node + 1, found%rank, found%pair + 1, &
+    found%face + 1], ni, idet)
   call give_reals([found%value, found%limit], nr, rdet)
   name = f_text(c_loc(found%function))
 end subroutine
@@ -257,7 +258,8 @@ recursive subroutine ftdtab(ip, n, inum, iptr, iterm, coef, const, ierr)
   real(c_double), intent(in), target :: const(*)
   integer, intent(out) :: ierr
 
-  ierr = told(feti_dof_table(handle(ip), wide(n), inum, integers(iptr), iterm, coef, reals(const, .true.), 1_c_int32_t))
+  ierr = told(feti_dof_table(handle(ip), wide(n), inum, integers(iptr, .true.), iterm, coef, reals(const, .true.), &
+    1_c_int32_t))
 end subroutine
 
 !> Reads the connected part of every unknown of a body. C: feti_body_components.
@@ -453,7 +455,7 @@ recursive subroutine ftrows(ip, kind, m, iptr, ibody, idof, val, rhs, ifirst, ie
   integer, intent(out) :: ierr
   integer(c_int64_t), target :: first
 
-  ierr = told(feti_rows_add(handle(ip), narrow(kind), wide(m), iptr, integers(ibody), idof, val, 1_c_int32_t, &
+  ierr = told(feti_rows_add(handle(ip), narrow(kind), wide(m), iptr, integers(ibody, .true.), idof, val, 1_c_int32_t, &
     reals(rhs, .true.), c_loc(first)), [1, 2, 3, 4, 5, 6, 7, 0, 8, 9])
   if (ierr == FETI_OK) call fit(first + 1, ifirst, ierr)
 end subroutine
@@ -513,8 +515,8 @@ recursive subroutine ftfadd(ip, nd, idim, nrow, iptr, ibody, idof, val, coef, bn
   integer, intent(out) :: ierr
   integer(c_int64_t), target :: first
 
-  ierr = told(feti_friction_add(handle(ip), wide(nd), narrow(idim), nrow, iptr, integers(ibody), idof, val, 1_c_int32_t, &
-    reals(coef, .true.), reals(bnd, .true.), c_loc(first)), [1, 2, 3, 4, 5, 6, 7, 8, 0, 9, 10, 11])
+  ierr = told(feti_friction_add(handle(ip), wide(nd), narrow(idim), nrow, iptr, integers(ibody, .true.), idof, val, &
+    1_c_int32_t, reals(coef, .true.), reals(bnd, .true.), c_loc(first)), [1, 2, 3, 4, 5, 6, 7, 8, 0, 9, 10, 11])
   if (ierr == FETI_OK) call fit(first + 1, ifirst, ierr)
 end subroutine
 
@@ -636,6 +638,147 @@ recursive subroutine ftfclr(ip, ierr)
   ierr = told(feti_friction_clear(handle(ip)))
 end subroutine
 
+!> Adds a surface over nodes of a mesh. LDD = 0: a tool without unknowns. C: feti_surface_add.
+recursive subroutine ftsadd(ip, ibody, idim, n, x, ldx, idof, ldd, isurf, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, ibody, idim, n, ldx, ldd
+  real(c_double), intent(in) :: x(*)
+  integer, intent(in), target :: idof(*)
+  integer, intent(inout) :: isurf
+  integer, intent(out) :: ierr
+  integer(c_int64_t) :: surface
+
+  ierr = told(feti_surface_add(handle(ip), body_or_all(ibody), narrow(idim), wide(n), x, wide(ldx), &
+    integers(idof, ldd /= 0), wide(ldd), 1_c_int32_t, surface), [1, 2, 3, 4, 5, 6, 7, 8, 0, 9])
+  if (ierr == FETI_OK) call fit(surface + 1, isurf, ierr)
+end subroutine
+
+!> Adds faces of one shape to a surface. C: feti_surface_faces.
+recursive subroutine ftsfac(ip, isurf, ishape, nf, node, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, isurf, ishape, nf, node(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_surface_faces(handle(ip), from_zero(isurf), narrow(ishape), wide(nf), node, 1_c_int32_t))
+end subroutine
+
+!> Adds a rigid surface of a simple shape, which has no unknowns: a tool or a foundation. It can be the master of a
+!> pair. C: feti_surface_rigid.
+recursive subroutine ftsrig(ip, idim, ishape, rdata, isurf, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, idim, ishape
+  real(c_double), intent(in) :: rdata(*)
+  integer, intent(inout) :: isurf
+  integer, intent(out) :: ierr
+  integer(c_int64_t) :: surface
+
+  ierr = told(feti_surface_rigid(handle(ip), narrow(idim), narrow(ishape), rdata, surface))
+  if (ierr == FETI_OK) call fit(surface + 1, isurf, ierr)
+end subroutine
+
+!> Gives a surface new positions: of all its nodes, or new data of a rigid shape. C: feti_surface_move.
+recursive subroutine ftsmov(ip, isurf, x, ldx, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, isurf, ldx
+  real(c_double), intent(in) :: x(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_surface_move(handle(ip), from_zero(isurf), x, wide(ldx)))
+end subroutine
+
+!> Reads the sizes of a surface. C: feti_surface_counts.
+recursive subroutine ftscnt(ip, isurf, idim, n, nf, ndata, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, isurf
+  integer, intent(inout) :: idim, n, nf, ndata
+  integer, intent(out) :: ierr
+  integer(c_int32_t), target :: dim
+  integer(c_int64_t), target :: nodes, faces, data
+
+  ierr = told(feti_surface_counts(handle(ip), from_zero(isurf), c_loc(dim), c_loc(nodes), c_loc(faces), c_loc(data)))
+  if (ierr == FETI_OK) idim = int(dim)
+  if (ierr == FETI_OK) call fit(nodes, n, ierr)
+  if (ierr == FETI_OK) call fit(faces, nf, ierr)
+  if (ierr == FETI_OK) call fit(data, ndata, ierr)
+end subroutine
+
+!> Adds a pair of surfaces that may meet: the nodes of the slave must not enter the master. C: feti_pair_add.
+recursive subroutine ftpadd(ip, islave, master, method, dist, ipair, ifirst, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, islave, master, method
+  real(c_double), intent(in) :: dist
+  integer, intent(inout) :: ipair, ifirst
+  integer, intent(out) :: ierr
+  integer(c_int64_t) :: pair
+  integer(c_int64_t), target :: first
+
+  ierr = told(feti_pair_add(handle(ip), from_zero(islave), from_zero(master), narrow(method), dist, pair, c_loc(first)))
+  if (ierr == FETI_OK) call fit(pair + 1, ipair, ierr)
+  if (ierr == FETI_OK) call fit(first + 1, ifirst, ierr)
+end subroutine
+
+!> Sets a number of a pair by its name; feti_pairs_find uses it. C: feti_pair_set_f64.
+recursive subroutine ftpval(ip, ipair, name, n, value, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, ipair, n
+  character(len=*), intent(in) :: name
+  real(c_double), intent(in) :: value(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_pair_set_f64(handle(ip), from_zero(ipair), c_text(name), wide(n), value))
+end subroutine
+
+!> Finds the partners of all slave nodes at the present positions, where u = 0, and makes the rows of all pairs. C:
+!> feti_pairs_find.
+recursive subroutine ftpfnd(ip, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_pairs_find(handle(ip)))
+end subroutine
+
+!> Begins the next load step at the present positions of all surfaces: slips count from here, and nodes keep no faces.
+!> C: feti_pairs_commit.
+recursive subroutine ftpcmt(ip, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_pairs_commit(handle(ip)))
+end subroutine
+
+!> Reads a field of a pair at the nodes of the slave surface, in the order of these nodes; 0 where a node has no
+!> partner. C: feti_pair_field.
+recursive subroutine ftpfld(ip, ipair, ifield, n, values, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, ipair, ifield, n
+  real(c_double), intent(inout) :: values(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_pair_field(handle(ip), from_zero(ipair), narrow(ifield), wide(n), values))
+end subroutine
+
+!> Reads what a pair carries and where it is closed, by the last answer, and where it overlaps, at the present
+!> positions. C: feti_pair_info.
+recursive subroutine ftpinf(ip, ipair, ni, ipfact, nr, rpfact, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, ipair, ni, nr
+  integer, intent(inout) :: ipfact(*)
+  real(c_double), intent(inout) :: rpfact(*)
+  integer, intent(out) :: ierr
+  type(feti_pair_facts) :: found
+
+  found%struct_size = storage_size(found, c_int64_t) / 8
+  ierr = told(feti_pair_info(handle(ip), from_zero(ipair), found))
+  if (ierr < FETI_OK) return
+  call give([found%rows, found%without, found%closed, found%sticking, found%slipping, found%pressure_node + 1, &
+    found%angle_node + 1, found%depth_node + 1, found%master_depth_node + 1, found%between_walls, &
+    found%between_walls_node + 1, found%held], ni, ipfact)
+  call give_reals([found%force, found%moment, found%closed_area, found%pressure, found%angle, found%depth, &
+    found%master_depth, found%held_overlap], nr, rpfact)
+end subroutine
+
 !> Prepares the solve: null spaces, factors of the bodies, the dual operator. C: feti_setup.
 recursive subroutine ftstup(ip, ierr)
   use feti_contact_f77_base
@@ -687,7 +830,7 @@ recursive subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ier
     1, found%equality_row + 1, found%force_row + 1, found%complementarity_row + 1, found%friction_cone_node + 1, &
     found%friction_work_node + 1, found%friction_stick_node + 1, found%equilibrium_rank, found%balance_rank, &
     found%penetration_rank, found%equality_rank, found%force_rank, found%complementarity_rank, found%friction_cone_rank, &
-    found%friction_work_rank, found%friction_stick_rank], ni, icert)
+    found%friction_work_rank, found%friction_stick_rank, found%pair + 1, found%pair_node + 1], ni, icert)
   call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, &
     found%negative_force, found%complementarity, found%duality_gap, found%limit, found%friction_cone, &
     found%friction_work, found%friction_stick], nr, rcert)
@@ -712,7 +855,7 @@ recursive subroutine ftchkf(ip, n, u, m, rlam, me, rmu, nd, idim, rlt, ni, icert
     1, found%equality_row + 1, found%force_row + 1, found%complementarity_row + 1, found%friction_cone_node + 1, &
     found%friction_work_node + 1, found%friction_stick_node + 1, found%equilibrium_rank, found%balance_rank, &
     found%penetration_rank, found%equality_rank, found%force_rank, found%complementarity_rank, found%friction_cone_rank, &
-    found%friction_work_rank, found%friction_stick_rank], ni, icert)
+    found%friction_work_rank, found%friction_stick_rank, found%pair + 1, found%pair_node + 1], ni, icert)
   call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, &
     found%negative_force, found%complementarity, found%duality_gap, found%limit, found%friction_cone, &
     found%friction_work, found%friction_stick], nr, rcert)
@@ -921,7 +1064,8 @@ recursive subroutine ftdiag(ip, ni, idiag, nr, rdiag, ierr)
   if (ierr < FETI_OK) return
   call give([int(found%status, c_int64_t), int(found%kind, c_int64_t), found%body + 1, found%component + 1, found%dof + &
     1, found%row + 1, found%rows_involved, found%undetermined, found%redundant_rows, found%untouched_bodies, &
-    found%untouched_body + 1, found%doubtful_bodies, found%doubtful_body + 1, found%rank], ni, idiag)
+    found%untouched_body + 1, found%doubtful_bodies, found%doubtful_body + 1, found%rank, found%pair + 1, &
+    found%pair_node + 1], ni, idiag)
   call give_reals([found%margin, found%motion, found%unheld, found%capacity], nr, rdiag)
 end subroutine
 

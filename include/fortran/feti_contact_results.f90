@@ -130,6 +130,8 @@ contains
       certificate%friction_cone_node = certificate%friction_cone_node + 1
       certificate%friction_work_node = certificate%friction_work_node + 1
       certificate%friction_stick_node = certificate%friction_stick_node + 1
+      certificate%pair = certificate%pair + 1
+      certificate%pair_node = certificate%pair_node + 1
     end if
     call finish(status, stat, errmsg)
   end subroutine
@@ -158,6 +160,8 @@ contains
       certificate%friction_cone_node = certificate%friction_cone_node + 1
       certificate%friction_work_node = certificate%friction_work_node + 1
       certificate%friction_stick_node = certificate%friction_stick_node + 1
+      certificate%pair = certificate%pair + 1
+      certificate%pair_node = certificate%pair_node + 1
     end if
     call finish(status, stat, errmsg)
   end subroutine

@@ -102,6 +102,8 @@ contains
       findings%untouched_body = findings%untouched_body + 1
       findings%doubtful_body = findings%doubtful_body + 1
       findings%soft_body = findings%soft_body + 1
+      findings%pair = findings%pair + 1
+      findings%pair_node = findings%pair_node + 1
     end if
     call finish(status, stat, errmsg)
   end subroutine

@@ -29,7 +29,7 @@ foreach(bytes 4 8)
     set(flags -fdefault-integer-8)
   endif()
   f77_program(f77_three_bodies_${bytes} f77_face_${bytes} "${flags}" three_bodies.f reader.f)
-  f77_program(f77_calls_${bytes} f77_face_${bytes} "${flags}" calls.f findings.f kept.f elements.f friction.f numbers.f small.f reader.f)
+  f77_program(f77_calls_${bytes} f77_face_${bytes} "${flags}" calls.f findings.f kept.f elements.f friction.f numbers.f surfaces.f small.f reader.f)
   f77_program(f77_watched_${bytes} f77_face_${bytes} "${flags}" watched.f small.f reader.f)
   f77_program(f77_saved_${bytes} f77_face_${bytes} "${flags}" saved.f small.f reader.f)
   claim_silent("FORTRAN 77, INTEGER of ${bytes} bytes: a problem is written, read back and solved, lines are told"
@@ -59,7 +59,7 @@ claim_silent("FORTRAN 77: a host with DOUBLE PRECISION of 16 bytes is told so" $
 claim_silent("FORTRAN 77: it is told so by a face with the same flags" $<TARGET_FILE:f77_sizes_quad_both> -1002)
 claim_clean("valgrind finds nothing where sizes differ" $<TARGET_FILE:f77_sizes_face_8> -1001)
 f77_face(f77_face_real_8 -fdefault-real-8 -fdefault-double-8)
-f77_program(f77_calls_real_8 f77_face_real_8 "-fdefault-real-8;-fdefault-double-8" calls.f findings.f kept.f elements.f friction.f numbers.f small.f reader.f)
+f77_program(f77_calls_real_8 f77_face_real_8 "-fdefault-real-8;-fdefault-double-8" calls.f findings.f kept.f elements.f friction.f numbers.f surfaces.f small.f reader.f)
 claim_silent("FORTRAN 77: REAL of 8 bytes beside DOUBLE PRECISION of 8 is no difference" $<TARGET_FILE:f77_calls_real_8>)
 
 claim_silent("FORTRAN 77: the face compiles without a warning, names have at most 6 characters, the include file both forms"

@@ -80,6 +80,8 @@ fn detail(record: Option<&Record>) -> feti_error_detail {
         element: known(place.element),
         node: known(place.node),
         rank: known(place.rank),
+        pair: known(place.pair),
+        face: known(place.face),
     }
 }
 

@@ -5,7 +5,7 @@ use std::mem::MaybeUninit;
 use crate::boundary::arrays::null;
 use crate::header::types::{
     feti_body_facts, feti_certificate, feti_communicator, feti_error_detail, feti_findings, feti_info,
-    feti_option, feti_phase,
+    feti_option, feti_pair_facts, feti_phase,
 };
 use feti_contact::error::{Error, Result};
 
@@ -32,6 +32,7 @@ first_is_struct_size!(
     feti_findings,
     feti_info,
     feti_option,
+    feti_pair_facts,
     feti_phase,
 );
 

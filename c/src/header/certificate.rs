@@ -76,4 +76,8 @@ pub struct feti_certificate {
     pub friction_work_rank: i64,
     /// Rank of the node with the worst slip.
     pub friction_stick_rank: i64,
+    /// Pair of surfaces to which the row or node with the largest ratio `worst` belongs, from 0; -1: none.
+    pub pair: i64,
+    /// Slave node of this row, in its surface, from 0; -1: none.
+    pub pair_node: i64,
 }

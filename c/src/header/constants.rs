@@ -11,6 +11,51 @@ pub const FETI_TANGENTIAL: i32 = 3;
 /// these numbers; after feti_dof_table_i32 or _i64 arrays have an entry for each unknown of the table.
 pub const FETI_ALL: i64 = -1;
 
+/// Shape of a face in the plane: a line with 2 nodes. Corners come first, then the nodes on the edges, then the one in the centre, as in VTK.
+pub const FETI_LINE2: i32 = 1;
+/// Shape of a face in the plane: a line with 3 nodes, the last in the middle.
+pub const FETI_LINE3: i32 = 2;
+/// Shape of a face in space: a triangle with 3 nodes.
+pub const FETI_TRI3: i32 = 3;
+/// Shape of a face in space: a triangle with 6 nodes.
+pub const FETI_TRI6: i32 = 4;
+/// Shape of a face in space: a quadrilateral with 4 nodes.
+pub const FETI_QUAD4: i32 = 5;
+/// Shape of a face in space: a quadrilateral with 8 nodes.
+pub const FETI_QUAD8: i32 = 6;
+/// Shape of a face in space: a quadrilateral with 9 nodes.
+pub const FETI_QUAD9: i32 = 7;
+/// Shape of a rigid surface: a plane; data: a point, the outward normal.
+pub const FETI_PLANE: i32 = 11;
+/// Shape of a rigid surface: a sphere, in the plane a circle; data: the centre, the radius.
+pub const FETI_SPHERE: i32 = 12;
+/// Shape of a rigid surface in space: a cylinder without ends; data: a point of the axis, its direction, the radius.
+pub const FETI_CYLINDER: i32 = 13;
+
+/// Method of a pair: a row between each slave node and the nearest point of the master.
+pub const FETI_NODE_TO_FACE: i32 = 1;
+/// Method of a pair: a row for each slave node with the gap that its faces have in the mean, weighted over the faces of both surfaces (mortar).
+pub const FETI_MORTAR: i32 = 2;
+/// Added to the method of a pair: the surfaces are tied, by equality rows in all directions.
+pub const FETI_TIED: i32 = 4;
+
+/// Field of a pair, 1 number: contact force; of a tie the part along the normal, above 0 under pressure.
+pub const FETI_FORCE: i32 = 1;
+/// Field of a pair, 1 number: contact force per area.
+pub const FETI_PRESSURE: i32 = 2;
+/// Field of a pair, dim numbers: tangential force on the slave per area.
+pub const FETI_SHEAR: i32 = 3;
+/// Field of a pair, 1 number: open gap, length.
+pub const FETI_GAP: i32 = 4;
+/// Field of a pair, dim numbers: slip of the load step, length.
+pub const FETI_SLIP: i32 = 5;
+/// Field of a pair, 1 number: area of the node, length^2.
+pub const FETI_AREA: i32 = 6;
+/// Field of a pair, dim numbers: unit normal from slave to master.
+pub const FETI_NORMAL: i32 = 7;
+/// Field of a pair, 1 number: 0 open, 1 closed without friction, 2 sticks, 3 slips.
+pub const FETI_CLOSED: i32 = 8;
+
 /// Storage: every entry of the symmetric matrix is given.
 pub const FETI_FULL: i32 = 0;
 /// Storage: entries with column <= row are given.

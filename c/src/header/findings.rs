@@ -55,4 +55,8 @@ pub struct feti_findings {
     pub capacity: f64,
     /// Rank that has given `body` or `row`, if several ranks have given some; -1: does not apply.
     pub rank: i64,
+    /// Pair of surfaces to which `row` belongs; -1: none.
+    pub pair: i64,
+    /// Slave node of this row, in its surface; -1: none.
+    pub pair_node: i64,
 }

@@ -4,5 +4,6 @@ mod certificate;
 mod communicator;
 mod constants;
 mod findings;
+mod pairs;
 pub mod status;
 pub mod types;

@@ -7,6 +7,7 @@ pub use crate::header::certificate::feti_certificate;
 pub use crate::header::communicator::*;
 pub use crate::header::constants::*;
 pub use crate::header::findings::feti_findings;
+pub use crate::header::pairs::feti_pair_facts;
 
 /// A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never an address.
 #[repr(C)]
@@ -42,10 +43,14 @@ pub struct feti_error_detail {
     pub function: [c_char; 40],
     /// Element of the body; -1: does not apply.
     pub element: i64,
-    /// Node with friction; -1: does not apply.
+    /// Node with friction; with `pair` or `face`, or if a surface is refused, a node of the surface; -1: does not apply.
     pub node: i64,
     /// Rank whose numbers these are, if several have given bodies or rows; -1: does not apply.
     pub rank: i64,
+    /// Pair of surfaces; -1: does not apply.
+    pub pair: i64,
+    /// Face of the surface; -1: does not apply.
+    pub face: i64,
 }
 
 /// An option: name, text, default and range.

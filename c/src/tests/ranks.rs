@@ -307,6 +307,30 @@ fn different_calls_end_with_the_same_status_on_both_ranks() {
     });
 }
 
+/// A surface without nodes, and a plane.
+fn add_surfaces(p: &Owned) -> [i32; 2] {
+    let (data, mut surface) = ([0.0, 0.0, 0.0, 1.0], -1);
+    // SAFETY: without nodes nothing is read; a plane has four numbers.
+    unsafe {
+        let (none, dof) = (std::ptr::null(), std::ptr::null());
+        [
+            feti_surface_add_i32(p.0, FETI_ALL, 2, 0, none, 2, dof, 2, 0, &mut surface),
+            feti_surface_rigid(p.0, 2, FETI_PLANE, data.as_ptr(), &mut surface),
+        ]
+    }
+}
+
+#[test]
+fn surfaces_come_after_the_table_of_ranks() {
+    both(|_, table| {
+        let p = Owned::new();
+        assert_eq!(set(&p, table), FETI_OK);
+        assert_eq!(add_surfaces(&p), [FETI_OK; 2]);
+        let before = Owned::new();
+        assert_eq!((add_surfaces(&before), set(&before, table)), ([FETI_OK; 2], FETI_STATE));
+    });
+}
+
 #[test]
 fn a_table_that_cannot_be_is_refused() {
     let [end, _] = End::pair(None);

@@ -4,7 +4,7 @@ use std::ptr::{null, null_mut};
 
 use crate::*;
 
-pub const SOURCES: [&str; 24] = [
+pub const SOURCES: [&str; 26] = [
     include_str!("../bodies/body.rs"),
     include_str!("../bodies/body_info.rs"),
     include_str!("../bodies/elements.rs"),
@@ -18,6 +18,7 @@ pub const SOURCES: [&str; 24] = [
     include_str!("../bodies/numbering.rs"),
     include_str!("../bodies/operator.rs"),
     include_str!("../options.rs"),
+    include_str!("../pairs.rs"),
     include_str!("../phases.rs"),
     include_str!("../problem.rs"),
     include_str!("../progress.rs"),
@@ -26,6 +27,7 @@ pub const SOURCES: [&str; 24] = [
     include_str!("../rows.rs"),
     include_str!("../solve.rs"),
     include_str!("../state.rs"),
+    include_str!("../surfaces.rs"),
     include_str!("../bodies/stiffness.rs"),
     include_str!("../validation.rs"),
     include_str!("../bodies/values.rs"),
@@ -93,6 +95,19 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_friction_slips(0, 0, null_mut());
         feti_friction_states(0, null_mut());
         feti_friction_clear();
+        feti_surface_add_i32(0, 0, 0, null(), 0, null(), 0, 0, null_mut());
+        feti_surface_add_i64(0, 0, 0, null(), 0, null(), 0, 0, null_mut());
+        feti_surface_faces_i32(0, 0, 0, null(), 0);
+        feti_surface_faces_i64(0, 0, 0, null(), 0);
+        feti_surface_rigid(0, 0, null(), null_mut());
+        feti_surface_move(0, null(), 0);
+        feti_surface_counts(0, null_mut(), null_mut(), null_mut(), null_mut());
+        feti_pair_add(0, 0, 0, 0.0, null_mut(), null_mut());
+        feti_pair_set_f64(0, null(), 0, null());
+        feti_pairs_find();
+        feti_pairs_commit();
+        feti_pair_field(0, 0, 0, null_mut());
+        feti_pair_info(0, null_mut());
         feti_setup(); feti_solve(null_mut());
         feti_phase_count(null_mut()); feti_phase_at(0, null_mut());
         feti_cancel();

@@ -130,6 +130,24 @@ static void give_loose_body(feti_problem *p)
     MUST(feti_body_null_space(p, body, 1, 2, mode, 2, FETI_EXACT));
 }
 
+/* Surface 0: both unknowns of body 1 as heights of two nodes; surface 1: a plane far below it; surface 2: the same nodes without a face.
+   Pairs come before rows; the nodes have no partner. */
+static void give_surfaces(feti_problem *p, int with_rows)
+{
+    static const double x[4] = { 0.0, 0.0, 1.0, 0.0 }, plane[4] = { 0.0, -9.0, 0.0, 1.0 };
+    static const int32_t dof[4] = { -1, 0, -1, 1 }, line[2] = { 0, 1 };
+    int64_t slave, master, cloud, pair;
+
+    MUST(feti_rows_clear(p, FETI_INEQUALITY));
+    MUST(feti_rows_clear(p, FETI_EQUALITY));
+    MUST(feti_surface_add_i32(p, 1, 2, 2, x, 2, dof, 2, 0, &slave));
+    MUST(feti_surface_faces_i32(p, slave, FETI_LINE2, 1, line, 0));
+    MUST(feti_surface_rigid(p, 2, FETI_PLANE, plane, &master));
+    MUST(feti_surface_add_i32(p, 1, 2, 2, x, 2, dof, 2, 0, &cloud));
+    MUST(feti_pair_add(p, slave, master, FETI_NODE_TO_FACE, 1.0, &pair, NULL));
+    if (with_rows) give_rows(p);
+}
+
 /* What the function wants besides bodies and rows. */
 static void prepare(const char *name, feti_problem *p)
 {
@@ -147,6 +165,8 @@ static void prepare(const char *name, feti_problem *p)
     }
     if (strncmp(name, "feti_friction_", 14) == 0 || strcmp(name, "feti_check_friction") == 0)
         MUST(feti_friction_add_i32(p, 1, 1, normal_row, tangent_ptr, tangent_body, tangent_dof, tangent, 0, NULL, NULL, NULL));
+    if (strncmp(name, "feti_surface_", 13) == 0 || strncmp(name, "feti_pair", 9) == 0)
+        give_surfaces(p, strcmp(name, "feti_pair_add") != 0);
     if (strncmp(name, "feti_state_", 11) == 0) MUST(feti_state_save(p, &id));
     if (strncmp(name, "feti_diagnosis_undetermined", 27) == 0) give_loose_body(p);
     if (strcmp(name, "feti_diagnosis_motion") == 0) MUST(feti_body_load(p, 1, 2, away));
@@ -178,12 +198,16 @@ feti_problem *problem_for(const function *f)
 int32_t answer(feti_problem *p, double values[ANSWER])
 {
     const int32_t status = feti_solve(p, NULL);
+    double lambda[ROOM];
+    int64_t rows;
 
     memset(values, 0, ANSWER * sizeof *values);
     if (status < 0) return status;
+    OK(feti_counts(p, NULL, NULL, &rows, NULL));
     OK(feti_displacement(p, 0, 2, values));
     OK(feti_displacement(p, 1, 2, values + 2));
-    OK(feti_multipliers(p, FETI_INEQUALITY, 2, values + 4));
+    OK(feti_multipliers(p, FETI_INEQUALITY, rows, lambda));
+    memcpy(values + 4, lambda + rows - 2, 2 * sizeof *values); /* rows of pairs come first */
     OK(feti_multipliers(p, FETI_EQUALITY, 1, values + 6));
     return status;
 }

@@ -85,7 +85,7 @@ int32_t grid_call(const grid *bars, int call, feti_problem **problem)
     }
 }
 
-static uint64_t folded(uint64_t print, int64_t n, const double *x)
+uint64_t grid_folded(uint64_t print, int64_t n, const double *x)
 {
     for (int64_t i = 0; i < n; i++) {
         uint64_t bits;
@@ -101,10 +101,10 @@ uint64_t grid_fingerprint(const grid *bars, feti_problem *problem)
     uint64_t print = 0xcbf29ce484222325u;
 
     OK(feti_multipliers(problem, FETI_INEQUALITY, FACE, lambda));
-    print = folded(print, FACE, lambda);
+    print = grid_folded(print, FACE, lambda);
     for (int body = 0; body < BARS; body++) {
         OK(feti_displacement(problem, body, bars->nodes, u));
-        print = folded(print, bars->nodes, u);
+        print = grid_folded(print, bars->nodes, u);
     }
     free(u);
     return print;

@@ -25,6 +25,9 @@ void grid_free(grid *bars);
 enum { GRID_CALLS = 9 };
 int32_t grid_call(const grid *bars, int call, feti_problem **problem);
 
+/* Bits of n numbers, folded into `print`. */
+uint64_t grid_folded(uint64_t print, int64_t n, const double *x);
+
 /* Bits of displacements and forces, folded into one number. */
 uint64_t grid_fingerprint(const grid *bars, feti_problem *problem);
 

@@ -1,11 +1,13 @@
 /* A host whose malloc fails, once at its n-th call or from there on: every call returns FETI_OK or FETI_MEMORY, nothing is
-   printed, and once there is memory again the same problem is solved to the same bits. For every n until the last call. */
+   printed, and once there is memory again the same problem is solved to the same bits. For every n until the last call. The problem has
+   rows of the host, or surfaces. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "grid.h"
+#include "strips.h"
 
 enum { LENGTH = 2, SECONDS = 60, ONCE = 0, ON = 1, KINDS = 2 };
 
@@ -45,11 +47,52 @@ int posix_memalign(void **block, size_t align, size_t size)
     return *block ? 0 : ENOMEM;
 }
 
-/* The calls up to the solve; the first status that is not FETI_OK. */
-static int32_t live(const grid *bars, int64_t threads, int *call, feti_problem **problem)
+/* Calls that end with a solve and what is read of it, and bits of the answer. */
+typedef struct {
+    const char *name;
+    int calls;
+    int32_t (*call)(int call, feti_problem **problem);
+    uint64_t (*fingerprint)(feti_problem *problem);
+} scenario;
+
+static grid bars;
+static strips surfaces;
+
+static int32_t call_of_rows(int call, feti_problem **problem)
 {
-    for (; *call <= GRID_CALLS; ++*call) {
-        const int32_t status = *call == GRID_CALLS ? feti_solve(*problem, NULL) : grid_call(bars, *call, problem);
+    return call == GRID_CALLS ? feti_solve(*problem, NULL) : grid_call(&bars, call, problem);
+}
+
+static uint64_t print_of_rows(feti_problem *problem)
+{
+    return grid_fingerprint(&bars, problem);
+}
+
+static int32_t call_of_surfaces(int call, feti_problem **problem)
+{
+    return strips_call(&surfaces, call, problem);
+}
+
+/* Forces now, and what was read in the last calls. */
+static uint64_t print_of_surfaces(feti_problem *problem)
+{
+    double force[STRIP];
+    uint64_t print = 0;
+
+    OK(feti_pair_field(problem, 0, FETI_FORCE, STRIP, force));
+    print = grid_folded(print, STRIP, force);
+    print = grid_folded(print, STRIP, surfaces.pressure);
+    return grid_folded(print, 3, surfaces.facts.force) + (uint64_t)surfaces.facts.slipping;
+}
+
+static const scenario SCENARIOS[] = { { "rows", GRID_CALLS + 1, call_of_rows, print_of_rows },
+                                      { "surfaces", STRIPS_CALLS, call_of_surfaces, print_of_surfaces } };
+
+/* All calls; the first status that is not FETI_OK. */
+static int32_t live(const scenario *of, int64_t threads, int *call, feti_problem **problem)
+{
+    for (; *call < of->calls; ++*call) {
+        const int32_t status = of->call(*call, problem);
         if (status != FETI_OK) return status;
         if (*call == 0) OK(feti_set_i64(*problem, "threads", threads));
     }
@@ -59,19 +102,19 @@ static int32_t live(const grid *bars, int64_t threads, int *call, feti_problem *
 /* What a child ends with: the malloc failed and a call told so, it failed and all calls went on, or there was no such malloc. */
 enum { TOLD = 10, WENT_ON = 11, NOT_REACHED = 12, AGAIN = 3 };
 
-static int child(const grid *bars, long n, int kind, int64_t threads, uint64_t wanted)
+static int child(const scenario *of, long n, int kind, int64_t threads, uint64_t wanted)
 {
     feti_problem *problem = NULL;
     int call = 0, told = 0;
 
     left = n;
     for_ever = kind == ON;
-    int32_t status = live(bars, threads, &call, &problem);
+    int32_t status = live(of, threads, &call, &problem);
     const int reached = left <= 0;
     while (status == FETI_MEMORY) {
         if (kind == ON && told++ > AGAIN) left = 0;
         if (kind == ONCE) told++;
-        status = live(bars, threads, &call, &problem);
+        status = live(of, threads, &call, &problem);
     }
     left = 0;
     if (status != FETI_OK) {
@@ -80,13 +123,13 @@ static int child(const grid *bars, long n, int kind, int64_t threads, uint64_t w
         fprintf(stderr, "status %d in call %d: %s\n", status, call, text);
         return 1;
     }
-    if (grid_fingerprint(bars, problem) != wanted) return 2;
-    if (feti_solve(problem, NULL) != FETI_OK || grid_fingerprint(bars, problem) != wanted) return 3;
+    if (of->fingerprint(problem) != wanted) return 2;
+    if (feti_solve(problem, NULL) != FETI_OK || of->fingerprint(problem) != wanted) return 3;
     return feti_problem_destroy(&problem) != FETI_OK ? 4 : !reached ? NOT_REACHED : told ? TOLD : WENT_ON;
 }
 
 /* Ends of a child whose malloc number n fails: none by a signal, none with output, each with the right answer after it. */
-static int last_of(const grid *bars, long n, int kind, int64_t threads, uint64_t wanted)
+static int last_of(const scenario *of, long n, int kind, int64_t threads, uint64_t wanted)
 {
     static const char *const kinds[KINDS] = { "once", "from then on" };
     int status = 0, pipes[2];
@@ -98,15 +141,15 @@ static int last_of(const grid *bars, long n, int kind, int64_t threads, uint64_t
         dup2(pipes[1], STDOUT_FILENO);
         dup2(pipes[1], STDERR_FILENO);
         alarm(SECONDS);
-        _exit(child(bars, n, kind, threads, wanted));
+        _exit(child(of, n, kind, threads, wanted));
     }
     close(pipes[1]);
     const ssize_t bytes = read(pipes[0], text, sizeof text - 1);
     close(pipes[0]);
     CHECK(waitpid(id, &status, 0) == id, "no child");
-    CHECK(bytes <= 0, "%s from malloc %ld, %d threads: %s", kinds[kind], n, (int)threads, text);
-    CHECK(WIFEXITED(status) && WEXITSTATUS(status) >= TOLD, "%s from malloc %ld, %d threads: signal %d, code %d", kinds[kind], n,
-          (int)threads, WIFSIGNALED(status) ? WTERMSIG(status) : 0, WIFEXITED(status) ? WEXITSTATUS(status) : 0);
+    CHECK(bytes <= 0, "%s: %s from malloc %ld, %d threads: %s", of->name, kinds[kind], n, (int)threads, text);
+    CHECK(WIFEXITED(status) && WEXITSTATUS(status) >= TOLD, "%s: %s from malloc %ld, %d threads: signal %d, code %d", of->name,
+          kinds[kind], n, (int)threads, WIFSIGNALED(status) ? WTERMSIG(status) : 0, WIFEXITED(status) ? WEXITSTATUS(status) : 0);
     return !WIFEXITED(status) || WEXITSTATUS(status) == NOT_REACHED;
 }
 
@@ -114,16 +157,21 @@ static int last_of(const grid *bars, long n, int kind, int64_t threads, uint64_t
 int main(int argc, char **argv)
 {
     const long step = argc > 1 ? atol(argv[1]) : 1;
-    grid bars = grid_of(LENGTH);
-    feti_problem *problem = NULL;
-    int call = 0;
 
-    OK(live(&bars, 1, &call, &problem));
-    const uint64_t wanted = grid_fingerprint(&bars, problem);
-    OK(feti_problem_destroy(&problem));
-    for (int64_t threads = 1; threads <= 2; threads++)
-        for (int kind = ONCE; kind < KINDS; kind++)
-            for (long n = 1; !last_of(&bars, n, kind, threads, wanted); n += step) { }
+    bars = grid_of(LENGTH);
+    strips_make(&surfaces);
+    for (int k = 0; k < 2; k++) {
+        const scenario *of = SCENARIOS + k;
+        feti_problem *problem = NULL;
+        int call = 0;
+
+        OK(live(of, 1, &call, &problem));
+        const uint64_t wanted = of->fingerprint(problem);
+        OK(feti_problem_destroy(&problem));
+        for (int64_t threads = 1; threads <= 2; threads++)
+            for (int kind = ONCE; kind < KINDS; kind++)
+                for (long n = 1; !last_of(of, n, kind, threads, wanted); n += step) { }
+    }
     grid_free(&bars);
     return check_result();
 }

@@ -19,6 +19,7 @@ C     Every subroutine of the face with status 0, its result compared.
       CALL KEPT
       CALL ELEMS
       CALL RUBS
+      CALL STRIPS
       END
 
 C     Options, names, version.

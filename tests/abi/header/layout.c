@@ -10,8 +10,8 @@
 #define AT(bytes, member) _Static_assert(offsetof(TYPE, member) == (bytes), "offset of " #member);
 
 #define TYPE feti_error_detail
-SIZE(136) AT(0, struct_size) AT(8, status) AT(12, argument) AT(16, body) AT(48, entry) AT(56, value) AT(64, limit)
-AT(72, function) AT(112, element) AT(120, node) AT(128, rank)
+SIZE(152) AT(0, struct_size) AT(8, status) AT(12, argument) AT(16, body) AT(48, entry) AT(56, value) AT(64, limit)
+AT(72, function) AT(112, element) AT(120, node) AT(128, rank) AT(136, pair) AT(144, face)
 #undef TYPE
 
 #define TYPE feti_option
@@ -33,9 +33,9 @@ SIZE(32) AT(0, struct_size) AT(8, bytes) AT(16, seconds) AT(24, name)
 #undef TYPE
 
 #define TYPE feti_certificate
-SIZE(256) AT(0, struct_size) AT(8, passed) AT(16, limit) AT(24, worst) AT(32, equilibrium) AT(80, duality_gap)
+SIZE(272) AT(0, struct_size) AT(8, passed) AT(16, limit) AT(24, worst) AT(32, equilibrium) AT(80, duality_gap)
 AT(88, equilibrium_body) AT(128, complementarity_row) AT(136, friction_cone) AT(160, friction_cone_node)
-AT(176, friction_stick_node) AT(184, equilibrium_rank) AT(248, friction_stick_rank)
+AT(176, friction_stick_node) AT(184, equilibrium_rank) AT(248, friction_stick_rank) AT(256, pair) AT(264, pair_node)
 #undef TYPE
 
 #define TYPE feti_progress
@@ -44,15 +44,21 @@ AT(72, seconds) AT(80, fraction)
 #undef TYPE
 
 #define TYPE feti_findings
-SIZE(200) AT(0, struct_size) AT(8, status) AT(12, kind) AT(16, body) AT(24, component) AT(32, dof) AT(40, row)
+SIZE(216) AT(0, struct_size) AT(8, status) AT(12, kind) AT(16, body) AT(24, component) AT(32, dof) AT(40, row)
 AT(48, rows_involved) AT(56, undetermined) AT(64, redundant_rows) AT(72, untouched_bodies) AT(80, untouched_body) AT(88, margin)
 AT(96, motion) AT(144, unheld) AT(152, doubtful_bodies) AT(160, doubtful_body) AT(168, soft_bodies) AT(176, soft_body)
-AT(184, capacity) AT(192, rank)
+AT(184, capacity) AT(192, rank) AT(200, pair) AT(208, pair_node)
 #undef TYPE
 
 #define TYPE feti_body_facts
 SIZE(160) AT(0, struct_size) AT(8, unknowns) AT(40, borrowed) AT(56, null_space) AT(80, shared_with) AT(104, gap)
 AT(112, force_error) AT(120, soft_free) AT(128, soft_held) AT(136, softness) AT(144, softness_of_rounding) AT(152, pieces)
+#undef TYPE
+
+#define TYPE feti_pair_facts
+SIZE(200) AT(0, struct_size) AT(8, rows) AT(16, without) AT(24, closed) AT(32, sticking) AT(40, slipping) AT(48, force) AT(72, moment)
+AT(96, closed_area) AT(104, pressure) AT(112, pressure_node) AT(120, angle) AT(128, angle_node) AT(136, depth) AT(144, depth_node)
+AT(152, master_depth) AT(160, master_depth_node) AT(168, between_walls) AT(176, between_walls_node) AT(184, held) AT(192, held_overlap)
 #undef TYPE
 
 #define TYPE feti_communicator
@@ -66,14 +72,15 @@ struct layout {
 };
 
 static const struct layout in_c[] = {
-    {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, rank)},
+    {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, face)},
     {"feti_option", sizeof(feti_option), offsetof(feti_option, default_str)},
     {"feti_info", sizeof(feti_info), offsetof(feti_info, seconds_leading)},
-    {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, friction_stick_rank)},
+    {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, pair_node)},
     {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
-    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, rank)},
+    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, pair_node)},
     {"feti_phase", sizeof(feti_phase), offsetof(feti_phase, name)},
     {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, pieces)},
+    {"feti_pair_facts", sizeof(feti_pair_facts), offsetof(feti_pair_facts, held_overlap)},
     {"feti_communicator", sizeof(feti_communicator), offsetof(feti_communicator, reserved)},
 };
 enum { TYPES = sizeof in_c / sizeof in_c[0] };

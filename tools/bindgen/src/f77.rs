@@ -192,10 +192,7 @@ impl Subroutine {
         let size = sizes.get(shape).cloned().unwrap_or_default();
         match target {
             Type::F64 if argument.is_nullable() => {
-                let present = match token.split_once('(') {
-                    Some((_, count)) => format!("{} /= 0", count.trim_end_matches(')').to_lowercase()),
-                    None => ".true.".to_string(),
-                };
+                let present = present(token);
                 self.pass(
                     &format!("real(c_double), intent({intent}), target"),
                     &dummy,
@@ -204,7 +201,8 @@ impl Subroutine {
             }
             Type::F64 => self.pass(&format!("real(c_double), intent({intent})"), &dummy, name.to_string()),
             _ if intent == "in" && argument.is_nullable() => {
-                self.pass("integer, intent(in), target", &dummy, format!("integers({name})"));
+                let present = present(token);
+                self.pass("integer, intent(in), target", &dummy, format!("integers({name}, {present})"));
             }
             _ if intent == "in" => self.pass("integer, intent(in)", &dummy, name.to_string()),
             // A list of numbers from 0, of which as many are written as fit.
@@ -349,6 +347,14 @@ impl Subroutine {
             out.push_str(&continued("  ", statement));
         }
         out + "end subroutine\n"
+    }
+}
+
+/// Whether an array is there: `R(NR)` is if NR is not 0.
+fn present(token: &str) -> String {
+    match token.split_once('(') {
+        Some((_, count)) => format!("{} /= 0", count.trim_end_matches(')').to_lowercase()),
+        None => ".true.".to_string(),
     }
 }
 

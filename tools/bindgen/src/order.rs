@@ -20,7 +20,7 @@ macro_rules! section {
 }
 
 #[rustfmt::skip]
-pub const SECTIONS: [Section; 21] = [
+pub const SECTIONS: [Section; 23] = [
     section!("Problem", "Create and destroy a problem, which owns all other data.", [
         feti_problem, feti_problem_create, feti_problem_destroy,
     ]),
@@ -51,6 +51,16 @@ pub const SECTIONS: [Section; 21] = [
         FETI_TANGENTIAL,
         feti_friction_add_i32, feti_friction_add_i64, feti_friction_law, feti_friction_compliance,
         feti_friction_counts,
+    ]),
+    section!("Surfaces", "Give surfaces with positions and faces, in place of rows of your own.", [
+        FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8, FETI_QUAD9, FETI_PLANE, FETI_SPHERE, FETI_CYLINDER,
+        feti_surface_add_i32, feti_surface_add_i64, feti_surface_faces_i32, feti_surface_faces_i64, feti_surface_rigid, feti_surface_move,
+        feti_surface_counts,
+    ]),
+    section!("Pairs of surfaces", "Say which surfaces may meet, find where they meet, read pressures.", [
+        FETI_NODE_TO_FACE, FETI_MORTAR, FETI_TIED,
+        FETI_FORCE, FETI_PRESSURE, FETI_SHEAR, FETI_GAP, FETI_SLIP, FETI_AREA, FETI_NORMAL, FETI_CLOSED, feti_pair_facts,
+        feti_pair_add, feti_pair_set_f64, feti_pairs_find, feti_pairs_commit, feti_pair_field, feti_pair_info,
     ]),
     section!("Options", "Set tolerance, threads, method and limits, by name.", [
         FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, feti_option,

@@ -15,13 +15,15 @@ use crate::rules;
 use crate::typed_table::{further, modules, Entry, Kind};
 
 const WHOLE: &str = include_str!("typed/whole.f90");
-const PARTS: [(&str, &str); 6] = [
+const PARTS: [(&str, &str); 8] = [
     ("bodies", include_str!("typed/bodies.f90")),
     ("elements", include_str!("typed/elements.f90")),
     ("options", include_str!("typed/options.f90")),
+    ("pairs", include_str!("typed/pairs.f90")),
     ("results", include_str!("typed/results.f90")),
     ("states", include_str!("typed/states.f90")),
     ("stiffness", include_str!("typed/stiffness.f90")),
+    ("surfaces", include_str!("typed/surfaces.f90")),
 ];
 
 /// (path, text) of every generated module.
