@@ -6,6 +6,8 @@
 
        min 1/2 d'K d - f'd   with   -n_i'd <= g_i,   f = -internal forces(u),   then u := u + d
 
+   The library makes the rows from top and bottom of the block and from the circles, as in example 18.
+
    K is the complete second derivative, so that the iteration converges quadratically: stiffness of the material, stress term
    (geometric stiffness), and curvature of the dies under the forces of the last iterate, -lambda (I - n n')/r. The block
    is compressed, so the last two terms are negative on its rigid motions and make K indefinite. The rigid motions of the
@@ -183,21 +185,58 @@ static void add_curvature(const double *u, const double *lambda, const place *at
     }
 }
 
-/* A row per node of top and bottom: it moves no further towards the axis of its die than its distance allows. */
-static void give_rows(feti_problem *problem, const double *u, const place *at)
-{
-    int32_t ptr[ROWS + 1], dof[2 * ROWS];
-    double val[2 * ROWS], gap[ROWS];
+/* Top and bottom of the block as surfaces, nodes in ascending order; the dies as circles. */
+typedef struct {
+    int64_t side[2], die[2];
+} surfaces;
 
-    for (int r = 0; r < ROWS; r++) {
-        double n[2];
-        gap[r] = from_axis(u, at, r, n) - RADIUS[r / SIDE];
-        ptr[r] = 2 * r;
-        for (int c = 0; c < 2; c++) dof[2 * r + c] = 2 * node_of(r) + c, val[2 * r + c] = -n[c];
+static void data_of(const place *at, int die, double data[3])
+{
+    axis_of(at, die, data);
+    data[2] = RADIUS[die];
+}
+
+static void positions(const double *u, double *x)
+{
+    for (int node = 0; node < NODES; node++) position(u, node, x + 2 * node);
+}
+
+/* A contact row per node of top and bottom, in the order of node_of. In the plane the body is on the left of its faces. */
+static void add_surfaces(feti_problem *problem, int64_t body, const place *at, surfaces *s)
+{
+    double x[N], data[3];
+    int32_t dof[N], face[2 * NX];
+
+    positions(NULL, x);
+    for (int i = 0; i < N; i++) dof[i] = i;
+    for (int r = 0; r < 2; r++) {
+        for (int i = 0; i < NX; i++) {
+            face[2 * i] = r == 0 ? node_at(i + 1, NY) : node_at(i, 0);
+            face[2 * i + 1] = r == 0 ? node_at(i, NY) : node_at(i + 1, 0);
+        }
+        data_of(at, r, data);
+        CALL(feti_surface_add_i32(problem, body, 2, NODES, x, 2, dof, 2, 0, &s->side[r]));
+        CALL(feti_surface_faces_i32(problem, s->side[r], FETI_LINE2, NX, face, 0));
+        CALL(feti_surface_rigid(problem, 2, FETI_SPHERE, data, &s->die[r]));
     }
-    ptr[ROWS] = 2 * ROWS;
-    CALL(feti_rows_clear(problem, FETI_INEQUALITY));
-    CALL(feti_rows_add_i32(problem, FETI_INEQUALITY, ROWS, ptr, NULL, dof, val, 0, gap, NULL));
+    for (int r = 0; r < 2; r++) {
+        int64_t pair;
+        CALL(feti_pair_add(problem, s->side[r], s->die[r], FETI_NODE_TO_FACE, WIDTH, &pair, NULL));
+    }
+}
+
+/* Rows where block and dies are now: -n_i'd <= g_i. */
+static void find_rows(feti_problem *problem, const surfaces *s, const double *u, const place *at)
+{
+    double x[N], data[3];
+
+    positions(u, x);
+    for (int r = 0; r < 2; r++) {
+        data_of(at, r, data);
+        CALL(feti_surface_move(problem, s->side[r], x, 2));
+        CALL(feti_surface_move(problem, s->die[r], data, 2));
+    }
+    CALL(feti_pairs_find(problem));
 }
 
 /* The rigid motions of the block where it is: two translations, and the rotation about the origin, (-y, x). */
@@ -246,8 +285,8 @@ typedef struct {
 /* Newton's method for a place of the dies; prints a line per iteration. Returns FETI_OK, or the status of the library for a step
    that is too large, or FETI_ITERATIONS. Cleared: `quadratic`, where a change is more than twice its predecessor squared (mm),
    once that is below 1 mm. Less than 1e-9 is printed as 1e-9. */
-static int32_t newton(feti_problem *problem, matrix *k, const place *at, double *u, double *lambda, feti_info *info,
-                      int *iterations, int *quadratic)
+static int32_t newton(feti_problem *problem, matrix *k, const surfaces *sides, const place *at, double *u, double *lambda,
+                      feti_info *info, int *iterations, int *quadratic)
 {
     double change = HUGE_VAL;
 
@@ -261,7 +300,7 @@ static int32_t newton(feti_problem *problem, matrix *k, const place *at, double 
         CALL(feti_body_values(problem, 0, k->ptr[N], k->val));
         give_motions(problem, u);
         CALL(feti_body_load(problem, 0, N, f));
-        give_rows(problem, u, at);
+        find_rows(problem, sides, u, at);
         CALL(feti_start_from(problem, FETI_INEQUALITY, ROWS, lambda)); /* the pairs are those of the last iterate */
         status = feti_solve(problem, info);
         if (status != FETI_OK) {
@@ -282,7 +321,8 @@ static int32_t newton(feti_problem *problem, matrix *k, const place *at, double 
 }
 
 /* A stage: the dies go from a place to another by load steps, halved where one fails. Returns 1 when they are there. */
-static int go(feti_problem *problem, matrix *k, place from, place to, double *u, double *lambda, feti_info *info, tally *sum)
+static int go(feti_problem *problem, matrix *k, const surfaces *sides, place from, place to, double *u, double *lambda,
+              feti_info *info, tally *sum)
 {
     double done = 0.0, step = 1.0, saved_u[N], saved_lambda[ROWS];
 
@@ -294,7 +334,7 @@ static int go(feti_problem *problem, matrix *k, place from, place to, double *u,
         memcpy(saved_lambda, lambda, sizeof saved_lambda);
         printf("depth %.4f mm, angle %7.4f degrees\n", at.depth, at.angle);
         printf("           |d| / mm  unbalanced closed  status\n");
-        if (newton(problem, k, &at, u, lambda, info, &iterations, &quadratic) == FETI_OK) {
+        if (newton(problem, k, sides, &at, u, lambda, info, &iterations, &quadratic) == FETI_OK) {
             done += step, sum->steps++;
             sum->most = iterations > sum->most ? iterations : sum->most;
             sum->quadratic = sum->quadratic && quadratic;
@@ -330,6 +370,7 @@ int main(void)
     feti_problem *problem = NULL;
     feti_info info = { .struct_size = sizeof info };
     tally sum = { 0, 0, 0, 1 };
+    surfaces sides;
     int64_t body;
     int right;
 
@@ -338,10 +379,11 @@ int main(void)
     CALL(feti_problem_create(&problem));
     CALL(feti_body_add(problem, N, &body));
     CALL(feti_body_stiffness_i32(problem, body, N, k.ptr, k.col, k.val, 0, FETI_LOWER, FETI_COPY));
-    right = go(problem, &k, start, closed, u, lambda, &info, &sum);
+    add_surfaces(problem, body, &start, &sides);
+    right = go(problem, &k, &sides, start, closed, u, lambda, &info, &sum);
     memcpy(pressed, u, sizeof u);
     memcpy(before, lambda, sizeof lambda);
-    right = right && go(problem, &k, closed, turned, u, lambda, &info, &sum);
+    right = right && go(problem, &k, &sides, closed, turned, u, lambda, &info, &sum);
     CALL(feti_problem_destroy(&problem));
 
     error = unbalanced(&k, u, lambda, &turned, force);

@@ -6,6 +6,8 @@
 !>
 !>     min 1/2 d'K d - f'd   with   -n_i'd <= g_i,   f = -internal forces(u),   then u := u + d
 !>
+!> The library makes the rows from top and bottom of the block and from the circles, as in example 18.
+!>
 !> K is the complete second derivative, so that the iteration converges quadratically: stiffness of the material, stress term
 !> (geometric stiffness), and curvature of the dies under the forces of the last iterate, -lambda (I - n n')/r. The block
 !> is compressed, so the last two terms are negative on its rigid motions and make K indefinite. The rigid motions of the
@@ -45,7 +47,7 @@ program block_between_dies
   type(feti_info) :: info
   type(place) :: dies
   real(dp) :: u(2, nodes), pressed(2, nodes), internal(2, nodes), lambda(rows), before(rows), force(2, 2), error, size_of_force
-  integer :: body, steps, rejected, longest
+  integer :: body, steps, rejected, longest, block_side(2), die(2)
   logical :: right, quadratic
 
   u = 0
@@ -59,6 +61,7 @@ program block_between_dies
   call feti_problem_create(problem)
   call feti_body_add(problem, n, body)
   call feti_body_stiffness(problem, body, ptr, col(:entries), val(:entries), FETI_LOWER)
+  call add_surfaces
   call go(place(0.0_dp, 0.0_dp), place(full_depth, 0.0_dp), right)
   pressed = u
   before = lambda
@@ -128,7 +131,7 @@ contains
       call feti_body_values(problem, body, val(:entries))
       call give_motions
       call feti_body_load(problem, body, -reshape(internal, [n]))
-      call give_rows
+      call find_rows
       call feti_start_from(problem, FETI_INEQUALITY, lambda)   ! the pairs are those of the last iterate
       call feti_solve(problem, info, stat=stat)
       if (stat /= FETI_OK) then
@@ -304,20 +307,44 @@ contains
     end do
   end subroutine
 
-  !> A row per node of top and bottom: it moves no further towards the axis of its die than its distance allows.
-  subroutine give_rows
-    real(dp) :: normal(2, rows), gap(rows)
-    integer :: r, k, dof(2, rows)
+  !> Top and bottom of the block as surfaces, the dies as circles: a contact row per node of top and bottom, in the order of node_of. In the
+  !> plane the body is on the left of its faces.
+  subroutine add_surfaces
+    integer :: i, r, pair, own(2, nodes), top(2, nx), bottom(2, nx)
 
-    do r = 1, rows
-      call from_axis(r, gap(r), normal(:, r))
-      gap(r) = gap(r) - radius(die_of(r))
-      dof(:, r) = 2 * node_of(r) - [1, 0]
+    own = reshape([(i, i=1, n)], [2, nodes])
+    top = reshape([(node_at(i, ny), node_at(i - 1, ny), i=1, nx)], [2, nx])
+    bottom = reshape([(node_at(i - 1, 0), node_at(i, 0), i=1, nx)], [2, nx])
+    do r = 1, 2
+      call feti_surface_add(problem, body, positions(), own, block_side(r))
+      call feti_surface_faces(problem, block_side(r), FETI_LINE2, merge(top, bottom, r == 1))
+      call feti_surface_rigid(problem, FETI_SPHERE, [axis_of(r), radius(r)], die(r))
     end do
-    call feti_rows_clear(problem, FETI_INEQUALITY)
-    call feti_rows_add(problem, FETI_INEQUALITY, [(2 * k + 1, k=0, rows)], [(body, k=1, 2 * rows)], &
-      reshape(dof, [2 * rows]), reshape(-normal, [2 * rows]), gap)
+    do r = 1, 2
+      call feti_pair_add(problem, block_side(r), die(r), FETI_NODE_TO_FACE, width, pair)
+    end do
   end subroutine
+
+  !> Rows where block and dies are now: -n_i'd <= g_i.
+  subroutine find_rows
+    integer :: r
+
+    do r = 1, 2
+      call feti_surface_move(problem, block_side(r), positions())
+      call feti_surface_move(problem, die(r), [axis_of(r), radius(r)])
+    end do
+    call feti_pairs_find(problem)
+  end subroutine
+
+  !> Of all nodes.
+  function positions() result(x)
+    real(dp) :: x(2, nodes)
+    integer :: k
+
+    do k = 1, nodes
+      x(:, k) = at_rest(k) + u(:, k)
+    end do
+  end function
 
   !> The rigid motions of the block where it is: two translations, and the rotation about the origin, (-y, x).
   subroutine give_motions

@@ -11,10 +11,10 @@ here=$(dirname "$0")
 }
 list=$1/list
 find "$1" -name '*.svg' | sort >"$list"
-[ "$(wc -l <"$list")" -ge 8 ] || { echo "pictures are missing:"; cat "$list"; exit 1; }
+[ "$(wc -l <"$list")" -ge 12 ] || { echo "pictures are missing:"; cat "$list"; exit 1; }
 while read -r picture; do
     case $picture in
-    */hertz_pressure*) set -- "$1" "$2" 'pressure / MPa' 'x / mm' 'Hertz' ;;
+    */hertz_pressure* | */hertz_by_*) set -- "$1" "$2" 'pressure / MPa' 'x / mm' 'Hertz' ;;
     */hertz_convergence*) set -- "$1" "$2" 'log10(residual / limit)' 'step' 'limit' ;;
     */cattaneo_mindlin_shear*) set -- "$1" "$2" 'shear / (mu p0)' 'x / mm' 'Cattaneo, Mindlin' ;;
     */cattaneo_mindlin_loop*) set -- "$1" "$2" 'push / (mu P)' 'shift / um' 'Cattaneo, Mindlin' ;;
