@@ -153,6 +153,28 @@ pub fn between(runs: &Runs) -> Vec<Figure> {
     .collect()
 }
 
+/// A find between 1e5 nodes and 1e5 faces; different bits count as a time without end.
+pub fn of_surfaces(deck: &'static str, runs: &Runs) -> Vec<Figure> {
+    let of = |threads, quantity| runs.median(deck, Program::Surfaces(threads), quantity);
+    let over =
+        |quantity| runs.ratio(deck, (Program::Surfaces(2), quantity), (Program::Surfaces(1), quantity));
+    let bits: Vec<f64> = [1, 2].map(|threads| runs.values(deck, Program::Surfaces(threads), "bits")).concat();
+    let same = bits.iter().all(|sum| *sum == bits[0]);
+    let seconds = |quantity| of(2, quantity).map(|wall| if same { wall } else { f64::NAN });
+    let figure = |name, value: Option<f64>, goal| Some(Figure { deck, name, value: value?, goal });
+    [
+        figure("find,2_threads,seconds", seconds("nodes_wall"), Goal::Most(0.5)),
+        figure("find,2_threads/1_thread,wall", over("nodes_wall"), Goal::None),
+        figure("mortar,9_points,2_threads,seconds", seconds("mortar_9_points_wall"), Goal::Most(3.0)),
+        figure("mortar,16_points,2_threads,seconds", seconds("mortar_16_points_wall"), Goal::Most(5.0)),
+        figure("mortar,16_points,2_threads/1_thread,wall", over("mortar_16_points_wall"), Goal::None),
+        figure("memory_per_face,bytes", of(1, "bytes_per_face"), Goal::Most(200.0)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
 /// How time and memory of bodies by their elements grow.
 pub fn of_growth(runs: &Runs) -> Vec<Figure> {
     const GIGABYTE: f64 = 1e9;

@@ -30,6 +30,7 @@ mod programs;
 mod runs;
 mod scaling;
 mod steps;
+mod surfaces;
 mod sweeps;
 
 use std::io::Write;
@@ -41,6 +42,9 @@ use peers::Peers;
 use problems::{Case, Model, CASES, PEERS};
 use programs::Program;
 use runs::Runs;
+
+const SURFACES: &str = "surfaces";
+const SURFACES_ROUNDS: usize = 5;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
@@ -70,6 +74,7 @@ fn child(kind: &str, deck: &str, threads: &str) -> Result<(), String> {
         "cut" => cut::run(by_elements()?, 0, threads.parse().map_err(|_| "no number of threads")?),
         "pieces" => cut::run(by_elements()?, threads.parse().map_err(|_| "no number of pieces")?, 2),
         "later" => cut::later(by_elements),
+        "surfaces" => surfaces::run(threads.parse().map_err(|_| "no number of threads")?),
         "parts" => parts::run(&build()?).map_err(|error| error.to_string()),
         "factor" => factors::run(&build()?, threads.parse().map_err(|_| "no number of threads")?),
         _ => parts::bandwidth().map_err(|error| error.to_string()),
@@ -102,6 +107,12 @@ fn benchmark(wanted: &[&str]) -> Result<(), String> {
     if wants("product") {
         runs.run("product", Program::Bandwidth, 1, &peers)?;
         judge(figures::of("product", &runs));
+    }
+    if wants(SURFACES) {
+        for (round, threads) in (1..=SURFACES_ROUNDS).flat_map(|round| [(round, 1), (round, 2)]) {
+            runs.run(SURFACES, Program::Surfaces(threads), round, &peers)?;
+        }
+        judge(figures::of_surfaces(SURFACES, &runs));
     }
     judge(figures::between(&runs));
     println!(

@@ -109,6 +109,7 @@ impl Peers {
             Program::Later => own("later", 1),
             Program::Parts => own("parts", 1),
             Program::Bandwidth => own("bandwidth", 1),
+            Program::Surfaces(threads) => own("surfaces", threads),
             Program::Factor(threads) => own("factor", threads),
             Program::Cholmod(_) => {
                 let mut command = Command::new(&self.cholmod);

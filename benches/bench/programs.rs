@@ -25,6 +25,8 @@ pub enum Program {
     Faer(usize),
     /// Bytes per second of an explicit product.
     Bandwidth,
+    /// A find between two surfaces on so many threads.
+    Surfaces(usize),
     Clarabel,
     Osqp,
 }
@@ -42,6 +44,7 @@ impl Program {
             Program::Factor(threads) => format!("factor_{threads}"),
             Program::Faer(threads) => format!("faer_{threads}"),
             Program::Bandwidth => "bandwidth".into(),
+            Program::Surfaces(threads) => format!("surfaces_{threads}"),
             Program::Clarabel => "clarabel".into(),
             Program::Osqp => "osqp".into(),
         }
@@ -67,7 +70,7 @@ impl Program {
         match self {
             Program::Ours(threads) | Program::Cut(threads) | Program::Cholmod(threads) => threads,
             Program::Pieces(_) => 2,
-            Program::Factor(threads) | Program::Faer(threads) => threads,
+            Program::Factor(threads) | Program::Faer(threads) | Program::Surfaces(threads) => threads,
             _ => 1,
         }
     }
