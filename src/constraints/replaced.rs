@@ -53,10 +53,12 @@ impl RowSet {
             .copied()
             .collect();
         let rounding: Vec<f64> = rest.clone().map(|i| self.rounding(i)).collect();
+        let names: Vec<bool> = rest.map(|i| self.is_named(i)).collect();
         let mut taken = None;
-        if !entries.is_empty() || rounding.iter().any(|v| *v > 0.0) {
+        if !entries.is_empty() || rounding.iter().any(|v| *v > 0.0) || names.contains(&true) {
             let rhs = std::iter::repeat_n(0.0, from).chain(rounding).collect();
-            taken = Some(Box::new(Taken { entries, rhs, named: Vec::new() }));
+            let named = std::iter::repeat_n(false, from).chain(names).collect();
+            taken = Some(Box::new(Taken { entries, rhs, named }));
         }
         Ok(Self { matrix: Arc::new(matrix), rhs, compliance: Arc::new(compliance), taken })
     }
@@ -97,6 +99,7 @@ mod tests {
     fn rows_behind_those_replaced_stay() {
         let mut all = set(&[(&[], f64::INFINITY), (&[], f64::INFINITY), (&[3, 4], 2.0)]);
         all.set_compliance(2, &[0.5]).unwrap();
+        all.name(2);
         let first = set(&[(&[1], 1.0), (&[], f64::INFINITY)]);
         let new = all.with_first(&first, 9, "rows").unwrap();
         assert_eq!(
@@ -104,6 +107,7 @@ mod tests {
             (vec![1.0, f64::INFINITY, 2.0], &[0.0, 0.0, 0.5][..])
         );
         assert_eq!((&new.matrix.ptr[..], &new.matrix.col[..]), (&[0, 1, 1, 3][..], &[1, 3, 4][..]));
+        assert_eq!([0, 1, 2].map(|i| new.is_named(i)), [false, false, true]);
         let mut kept = new;
         kept.keep_first(2);
         assert!(kept.same_but_rhs(&first) && kept.rhs == first.rhs && kept.matrix.ptr.len() == 3);

@@ -4,7 +4,7 @@ use super::{add_chain, on_ranks};
 use crate::error::Kind;
 use crate::solver::tests::lent::{set_chains, N};
 use crate::solver::tests::pairs::{pair_by, stacked, METHODS};
-use crate::solver::{Outcome, PairField, PairMethod, Problem};
+use crate::solver::{Outcome, PairField, PairMethod, Problem, RowKind, RowsInput};
 
 /// Two load steps of two blocks that rub, the upper one moved in between: forces, slips and states of the foot, and the resultant.
 fn rubbed(problem: &mut Problem, method: PairMethod) -> Vec<Vec<u64>> {
@@ -53,6 +53,39 @@ fn a_pair_on_any_rank_has_the_bits_of_one_rank() {
             assert_eq!(found[owner], alone, "{size} ranks, pair of rank {owner}");
         }
     }
+}
+
+/// The block rests on a chain of rank 1 by a row of the host, which comes after the rows of the pair; a find leaves it as it is.
+#[test]
+fn rows_that_name_unknowns_of_other_ranks_stay_behind_those_of_pairs() {
+    on_ranks(2, |rank, problem| {
+        if rank == 1 {
+            add_chain(problem, 0);
+            (0..2).for_each(|_| assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved));
+            return;
+        }
+        let [lower, upper] = stacked(2);
+        for (block, first) in [(&lower, 1000), (&upper, 2000)] {
+            let body = block.give(problem);
+            let numbers: Vec<i64> = (first..first + block.free as i64).collect();
+            problem.set_numbering(body, &numbers).unwrap();
+        }
+        let (master, slave) = (lower.surface(problem, 0, true), upper.surface(problem, 1, false));
+        let made = pair_by(problem, PairMethod::NodeToFace, slave, master, 0.1);
+        problem.pair_set(made, "offset", &[1e-3]).unwrap();
+        let row = problem.sizes().rows;
+        let input =
+            RowsInput { ptr: &[0, 2], body: None, dof: &[4, 2000], val: &[-1.0, 1.0], rhs: Some(&[1e-3]) };
+        problem.add_rows(RowKind::Inequality, input).unwrap();
+        let mut before = None;
+        for _ in 0..2 {
+            problem.pairs_find().unwrap();
+            assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+            let forces = problem.multipliers(RowKind::Inequality).unwrap().to_vec();
+            assert!(forces[row] > 0.0 && before.is_none_or(|before| before == forces[row].to_bits()));
+            before = Some(forces[row].to_bits());
+        }
+    });
 }
 
 #[test]
