@@ -6,7 +6,7 @@ use crate::platform::memory::headroom;
 use crate::solver::pairs::Sides;
 use crate::solver::problem::Problem;
 use crate::surface::vector::{plus, Vector};
-use crate::surface::{between_walls, find, Master, Opposite, Partner, Placed, Tree, NONE};
+use crate::surface::{between_walls, find, Master, Partner, Placed, Tree, NONE};
 
 /// Bytes of a node of either surface: its partner, twice, and its position.
 const PER_NODE: usize = 512;
@@ -72,19 +72,21 @@ impl Problem {
     fn overlaps(&self, pair: &Pair, facts: &mut PairFacts) -> Result<()> {
         let nodes = pair.nodes.len() + self.model.pairs.surfaces[pair.master].len();
         let _room = headroom(nodes.saturating_mul(PER_NODE), "facts on a pair")?;
+        if !pair.laws.scalars.is_on {
+            return Ok(());
+        }
         let normals = self.normals_of_surfaces()?;
         let sides = Sides::of(&self.model, pair, &normals)?;
-        let partners = sides.partners(&mut vec![NONE; pair.nodes.len()])?;
+        let (threads, rule, nodes, master) = (sides.threads(), sides.rule(), sides.nodes(), sides.master()?);
+        let partners = find(threads, &master, &rule, &nodes, &mut vec![NONE; nodes.len()])?;
         facts.deepest = deepest(&pair.nodes, &partners, |k| pair.laws.offset[k]);
-        let Opposite::Faces(placed, _) = sides.master else { return Ok(()) };
-        let (threads, rule, nodes) = (sides.threads(), sides.rule(), sides.nodes());
-        let tree = Tree::new(placed.faces, placed.x)?;
+        let Master::Faces(placed, tree) = &master else { return Ok(()) };
         if pair.method == PairMethod::NodeToFace {
-            let between = between_walls(threads, &placed, &tree, &rule, &nodes, &partners)?;
+            let between = between_walls(threads, placed, tree, &rule, &nodes, &partners)?;
             facts.between_walls = between.iter().filter(|between| **between).count();
             facts.first_between = between.iter().position(|between| *between).map(|k| pair.nodes[k] as usize);
         }
-        if sides.slave.faces.len() > 0 && pair.laws.scalars.is_on {
+        if sides.slave.faces.len() > 0 {
             let of_master: Vec<u32> = placed.faces.used().collect();
             let at: Vec<_> =
                 of_master.iter().map(|&k| (placed.x[k as usize], placed.normals[k as usize])).collect();

@@ -18,9 +18,7 @@ use crate::progress::LogLevel;
 use crate::solver::pairs::assembly::{Assembly, Contact};
 use crate::solver::problem::Problem;
 use crate::surface::vector::{largest, minus, Vector};
-use crate::surface::{
-    areas, find, Depth, Master, Meeting, Mortar, Opposite, Partner, Placed, Rule, Slave, Tree,
-};
+use crate::surface::{areas, find, Depth, Master, Meeting, Mortar, Opposite, Placed, Rule, Slave, Tree};
 
 /// Bytes of a slave node during a find: its rows, twice, and its partner; by mortar its rows have several nodes of the slave and of several
 /// faces of the master.
@@ -147,20 +145,16 @@ impl<'a> Sides<'a> {
         })
     }
 
-    /// The points of the master nearest to the nodes of the pair; `kept` as in [`find`].
-    fn partners(&self, kept: &mut [u32]) -> Result<Vec<Option<Partner>>> {
-        if !self.pair.laws.scalars.is_on {
-            return Ok(vec![None; self.pair.nodes.len()]);
-        }
-        find(self.threads(), &self.master()?, &self.rule(), &self.nodes(), kept)
-    }
-
+    /// `kept` as in [`find`].
     fn meeting(&self, kept: &mut [u32], depth: Depth) -> Result<Meeting> {
-        if self.pair.method == PairMethod::NodeToFace || !self.pair.laws.scalars.is_on {
-            return Ok(Meeting::Feet(self.partners(kept)?));
+        if !self.pair.laws.scalars.is_on {
+            return Ok(Meeting::Feet(vec![None; self.pair.nodes.len()]));
         }
-        let mortar = Mortar::find(self.threads(), &self.slave, &self.master()?, &self.rule(), depth)?;
-        Ok(Meeting::Mortar(mortar))
+        let (threads, master, rule) = (self.threads(), self.master()?, self.rule());
+        Ok(match self.pair.method {
+            PairMethod::NodeToFace => Meeting::Feet(find(threads, &master, &rule, &self.nodes(), kept)?),
+            PairMethod::Mortar => Meeting::Mortar(Mortar::find(threads, &self.slave, &master, &rule, depth)?),
+        })
     }
 
     fn found(&self, number: usize) -> Result<Found> {

@@ -2,7 +2,7 @@
 
 use super::pair_by;
 use super::solids::{mapped, Solid};
-use crate::solver::{PairField, PairMethod, Problem, Shape};
+use crate::solver::{PairMethod, Problem, Shape};
 
 /// Curvatures / 2 of the valley and of the foot of the block, 1 / length. On the way of the block the valley rises to 25 degrees.
 const VALLEY: f64 = 0.15;
@@ -97,11 +97,6 @@ fn newtons_method_of_a_block_that_slides_up_a_valley_ends() {
         let mut sliding = Sliding::new(shape, friction);
         let counts: Vec<usize> = (0..=STEPS).map(|k| sliding.step(STEP * k as f64)).collect();
         let facts = sliding.problem.pair_info(sliding.pair).unwrap();
-        let pressure = sliding.problem.pair_field(sliding.pair, PairField::Pressure).unwrap();
-        let slope = (2.0 * VALLEY * FOOT / (FOOT - VALLEY) * STEP * STEPS as f64).atan().to_degrees();
-        if std::env::var("SHOW").is_ok() {
-            println!("{shape:?} {friction}: {counts:?}, {slope:.0} degrees, p/E {:.3}, angle {:?}, deepest {:?} {:?}", pressure.iter().fold(0.0f64, |most, p| most.max(*p)), facts.largest_angle, facts.deepest, facts.deepest_of_master);
-        }
         assert!(counts.iter().all(|count| *count <= most), "{shape:?} {friction}: {counts:?}");
         assert!(facts.closed > 3 && facts.largest_angle.is_some_and(|of| of.1 < 0.15), "{facts:?}");
         assert!(friction == 0.0 || facts.slipping > 0, "{facts:?}");
