@@ -17,12 +17,13 @@
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
 # make mpi       several ranks under Open MPI and MPICH, DEALS=24 seeds of problems are dealt out; make mpi-short: under Open MPI
 #                alone, without them (a minute)
+# make hosts-python  scikit-fem, SfePy and GetFEM as hosts, each against a known answer (seconds; the first time 1.2 GB in build/hosts)
 # make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html, which Chromium
 #                opens page by page without network (some minutes)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
 # make man       the manual pages alone                                make deb        Debian packages in build/deb (some minutes)
 # make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
-# bench, scaling, demo, docs, mpi and test install the Debian packages they miss (tools/setup.sh).
+# bench, scaling, demo, docs, hosts-python, mpi and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CARGO   ?= cargo
@@ -37,7 +38,7 @@ RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO
 STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery rungs bits ranks test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
-.PHONY: quick driver man deb mpi mpi-short
+.PHONY: quick driver man deb mpi mpi-short hosts-python
 .PHONY: abi licences numbers vary packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -204,6 +205,22 @@ mpi: stage
 mpi-short: stage
 	@tools/setup.sh libopenmpi-dev openmpi-bin
 	sh tests/mpi/run.sh $(STAGE) $(CURDIR) build/mpi openmpi
+
+# Hosts in Python: two packages of PyPI, and one of Debian, which has modules for Debian's own Python alone.
+HOSTS := build/hosts/python
+$(HOSTS)/installed: adapters/python/requirements.txt
+	@tools/setup.sh
+	python3 -m venv --clear $(@D)
+	$(@D)/bin/pip install --quiet --requirement $<
+	touch $@
+
+hosts-python: export FETI_CONTACT_LIBRARY = $(STAGE)/lib/libfeti_contact.so
+hosts-python: export PYTHONDONTWRITEBYTECODE = 1
+hosts-python: stage $(HOSTS)/installed
+	@tools/setup.sh python3-getfem
+	$(HOSTS)/bin/python adapters/python/hertz_scikit_fem.py
+	$(HOSTS)/bin/python adapters/python/blocks_sfepy.py
+	/usr/bin/python3 adapters/python/bricks_getfem.py
 
 # With the order of elimination by METIS 5, the library of the system.
 metis:
