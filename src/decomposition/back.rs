@@ -1,7 +1,6 @@
 //! Translates the reason why there is no answer, and its place, from the parts to the bodies of the host.
 
 use crate::error::{Error, Kind, Proof};
-use crate::linalg::graph::components;
 use crate::mesh::Mesh;
 use crate::model::{contradiction, kind_and_row, HostModel, Parts};
 
@@ -18,11 +17,8 @@ pub fn of_host(host: &HostModel, parts: &Parts, mut error: Error) -> Error {
         let unknowns = parts.starts[part + 1] - parts.starts[part];
         let dof = error.place.dof.filter(|dof| *dof < unknowns);
         error.place.dof = dof.map(|dof| parts.place(part, dof).0).or(error.place.dof);
-        if let (Some(Proof::Motion { .. }), Some(k)) =
-            (error.proof.as_deref(), host.bodies[body].body.stiffness.as_deref())
-        {
-            let (component_of, count) = components(k);
-            error.place.component = error.place.dof.filter(|_| count > 1).map(|dof| component_of[dof]);
+        if let Some(Proof::Motion { .. }) = error.proof.as_deref() {
+            error.place.component = error.place.dof.and_then(|_| component(host, parts, part));
         }
     }
     let contact = host.contact.len();
@@ -47,6 +43,16 @@ pub fn of_host(host: &HostModel, parts: &Parts, mut error: Error) -> Error {
         }
     }
     error
+}
+
+/// Which connected component of its body a part is, in the order of first unknowns; none if the body is connected or cut. It does not need K,
+/// which another rank may have.
+fn component(host: &HostModel, parts: &Parts, part: usize) -> Option<usize> {
+    let body = parts.parts[part].body;
+    let (all, range, first) = (parts.of(body), host.range(body), parts.place(part, 0).0);
+    let loose = || parts.loose.iter().filter(|j| range.contains(j));
+    let before = loose().filter(|j| **j - range.start < first).count();
+    (!parts.is_cut(body) && all.len() + loose().count() > 1).then(|| part - all.start + before)
 }
 
 /// The numbers whose joints occur in a combination of rows, each once, the one with the largest weight first.

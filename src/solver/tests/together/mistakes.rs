@@ -145,6 +145,30 @@ fn a_load_that_nothing_holds() {
     assert!(errors.iter().flatten().all(|error| error.place.body == Some(1)));
 }
 
+/// Unknown 0 has no stiffness, and is in no part that is solved; of the two springs behind it the second has a load.
+#[test]
+fn the_connected_part_that_escapes_is_named_whichever_rank_has_its_body() {
+    let errors = told(|problem, wrong| {
+        if wrong {
+            let body = problem.add_body(5).unwrap();
+            let (ptr, col) = ([0, 0, 1, 3, 4, 6], [1, 1, 2, 3, 3, 4]);
+            let val = [1.0, -1.0, 1.0, 2.0, -2.0, 2.0];
+            let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+            problem.set_stiffness(body, input).unwrap();
+            problem.set_numbering(body, &[900, 901, 902, 903, 904]).unwrap();
+            problem.set_load(body, &[0.0, 0.0, 0.0, 1.0, 0.0]).unwrap();
+        }
+        let error = problem.solve().unwrap_err();
+        let found = problem.findings().unwrap().place.component;
+        assert_eq!(found, error.place.component);
+        Err(error)
+    });
+    are_equal(&errors, Kind::LoadNotHeld);
+    for error in errors.iter().flatten() {
+        assert_eq!((error.place.body, error.place.component), (Some(1), Some(2)), "{error}");
+    }
+}
+
 #[test]
 fn the_sizes_of_all_ranks_are_known_after_a_failure_too() {
     let sizes = on_ranks(RANKS, |rank, problem| {
