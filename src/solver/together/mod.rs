@@ -114,6 +114,8 @@ impl Problem {
             let refused = Some(error.clone());
             let number = self.joined.as_ref().map(|joined| joined.rank.ranks.rank);
             match self.together(call, 0, Brought { refused, ..Brought::default() }) {
+                // of several ranks that refuse something all hear of one
+                Err(told) if told.place.rank.is_some_and(|by| Some(by) != number) => told,
                 Err(_) => error.rank(number.unwrap_or(0)),
                 Ok(_) => error,
             }

@@ -263,6 +263,26 @@ fn what_one_rank_refuses_in_a_call_of_all() {
 }
 
 #[test]
+fn of_two_ranks_that_refuse_something_all_hear_of_one() {
+    for [first, second] in [[0, 1], [0, 2], [1, 2]] {
+        let errors = on_ranks(RANKS, |rank, problem| {
+            give(problem, rank);
+            problem
+                .checked_together(Call::Check, |_| match rank {
+                    rank if rank == first => Err(Error::argument("n", "too long")),
+                    rank if rank == second => Err(Error::argument("u", "no number")),
+                    _ => Ok(()),
+                })
+                .and_then(|()| problem.check(&[0.0; N], &[0.0][..usize::from(rank > 0)], &[]).map(drop))
+                .unwrap_err()
+        });
+        for error in errors {
+            assert_eq!((error.kind, error.place.rank), (Kind::Argument("n"), Some(first)), "{error}");
+        }
+    }
+}
+
+#[test]
 fn a_row_whose_square_overflows_and_friction_that_holds_too_little() {
     let overflow = told(|problem, wrong| {
         if wrong {
