@@ -1,6 +1,6 @@
 //! Setup, solve, and the verdict on an answer.
 
-use crate::boundary::{call, enter, enter_with_status, finite_input, known, same, OutStruct};
+use crate::boundary::{call, caught, enter, enter_with_status, finite_input, known, same, OutStruct};
 use crate::friction::all_nodes;
 use crate::header::status::of_outcome;
 use crate::header::types::{feti_certificate, feti_info, feti_problem};
@@ -72,13 +72,13 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
     let target = (!info.is_null()).then(|| unsafe { OutStruct::new(info, "info") }).transpose();
     let (mut sizes, mut found, mut ranks) = (Sizes::default(), None, None);
     let status = enter_with_status(p, call!(feti_solve(p, info)), |problem| {
-        problem.checked_together(Call::Solve, |_| target.as_ref().map(drop).map_err(Clone::clone))?;
         sizes = problem.sizes();
         ranks = Some((count_of(p), problem.traffic(), problem.seconds_leading()));
-        if problem.settings().fault_injection == 1 {
-            panic!("fault injected on request");
-        }
-        let _room = problem.checked_together(Call::Solve, Problem::working_headroom)?;
+        let _room = problem.checked_together(Call::Solve, |problem| {
+            target.as_ref().map_err(Clone::clone)?;
+            caught(|| may_fail(problem))?;
+            problem.working_headroom()
+        })?;
         let solved = problem.solve();
         sizes = problem.sizes_of_all();
         // if one group of bodies has no answer, others may have one
@@ -90,6 +90,14 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
         target.write(&info_of(status, sizes, found.as_ref(), ranks));
     }
     status
+}
+
+/// Panics if the host has asked for it.
+fn may_fail(problem: &Problem) -> Result<()> {
+    match problem.settings().fault_injection {
+        1 => panic!("fault injected on request"),
+        _ => Ok(()),
+    }
 }
 
 /// Verifies an answer without tangential forces against the current problem; the answer may come from another program.

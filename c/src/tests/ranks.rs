@@ -307,6 +307,24 @@ fn different_calls_end_with_the_same_status_on_both_ranks() {
     });
 }
 
+#[test]
+fn a_panic_on_one_rank_closes_the_problem_on_both() {
+    for by in 0..2 {
+        both(|rank, table| {
+            let p = Owned::new();
+            assert_eq!(set(&p, table), FETI_OK);
+            add_spring(&p, i64::from(rank), 1.0);
+            if rank == by {
+                assert_eq!(p.set(c"fault_injection", 1), FETI_OK);
+            }
+            assert_eq!(info(&p).0, FETI_INTERNAL);
+            assert_eq!(last_detail().rank, i64::from(by));
+            assert!(last_error().contains("fault injected on request"), "{}", last_error());
+            assert_eq!(info(&p).0, FETI_INTERNAL);
+        });
+    }
+}
+
 /// A surface without nodes, and a plane.
 fn add_surfaces(p: &Owned) -> [i32; 2] {
     let (data, mut surface) = ([0.0, 0.0, 0.0, 1.0], -1);
