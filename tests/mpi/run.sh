@@ -1,9 +1,9 @@
 #!/bin/sh
 # run.sh PREFIX ROOT WORK MPI...: with each MPI (openmpi, mpich, as Debian names their compilers) the installed sources for MPI are
 # compiled without a warning, as they are and with messages cut at 4096 bytes; examples 15 to 17 in C and Fortran, FORTRAN 77 hosts and
-# hostile hosts print on 2 and 4 ranks what they print on 1. The shared library needs no MPI. With PROBLEMS, a folder of problems, also what comes
-# of these, bit by bit: of those that are dealt out over the ranks (*.deal), and with LENDING, the prefix of a library that lends every body, of
-# problem files (*.feti).
+# hostile hosts print on 2 and 4 ranks what they print on 1; of a mistake that one of 3 ranks makes, each in turn, all hear the same. The
+# shared library needs no MPI. With PROBLEMS, a folder of problems, also what comes of these, bit by bit: of those that are dealt out over
+# the ranks (*.deal), and with LENDING, the prefix of a library that lends every body, of problem files (*.feti).
 set -eu
 prefix=$1 root=$2 work=$3
 shift 3
@@ -60,7 +60,9 @@ built() {
         $cc -std=c99 $strict $(pkg --cflags) -I"$folder" -I"$c" "$c/$example.c" "$c/demo.c" shim.o -o "${example}_c" $link
     done
     $cc -std=c99 $strict "$@" $(pkg --cflags) -I"$folder" "$root/tests/mpi/hostile.c" -o hostile $link -lpthread
-    $cc -std=c99 -pedantic $strict $(pkg --cflags) -I"$folder" "$root/tests/mpi/deals.c" shim.o -o deals $link
+    for host in deals statuses; do
+        $cc -std=c99 -pedantic $strict $(pkg --cflags) -I"$folder" "$root/tests/mpi/$host.c" shim.o -o "$host" $link -lpthread
+    done
     [ -z "${LENDING-}" ] || $cc -std=c99 $strict $(pkg --cflags) -I"$folder" "$root/tests/mpi/files.c" shim.o -o files -L"$LENDING/lib" \
         -Wl,-rpath,"$LENDING/lib" -lfeti_contact -lm
     $fc -O2 -Wall -J. -c $(pkg --variable=fortransources) $(pkg --variable=mpi_f08_sources) "$fortran/demo.f90"
@@ -126,6 +128,8 @@ for mpi in "$@"; do
         for example in $examples; do same "$mpi" "./${example}_fortran"; done
         same "$mpi" ./lends
         same "$mpi" ./gives
+        limit=600 run "$mpi" 3 ./statuses >printed 2>errors || { cat printed errors; fail "$mpi: not all ranks hear the same of every mistake"; }
+        echo "$mpi: $(wc -l <printed) mistakes, made by each of 3 ranks, are told on all"
         for case in single freed thread threads outside; do same "$mpi" ./hostile "$case"; done
         ended=0
         run "$mpi" 2 ./hostile leaves >printed 2>errors || ended=$?
