@@ -4,7 +4,7 @@ use std::path::Path;
 
 use decks::{Body, Deck, Rows};
 
-use super::{dimension, drawn, firsts, is_same, Motions, Said};
+use super::{dimension, drawn, equal_rows, firsts, Motions, Said};
 use crate::support::asked;
 
 /// Words of 8 bytes, as this machine has them.
@@ -31,7 +31,8 @@ impl Words {
 
     /// The key of a row is the first row that is the same.
     fn rows(&mut self, rows: &Rows) {
-        let first = |i: usize| (0..i).find(|j| is_same(rows, i, *j)).unwrap_or(i);
+        let equal = equal_rows(rows);
+        let first = |i: usize| equal.iter().find(|pair| pair.0 == i).map_or(i, |pair| pair.1);
         let keys: Vec<usize> = (0..rows.len()).map(first).collect();
         self.counts([&rows.len()].into_iter().chain(&keys).chain(&rows.matrix.ptr).chain(&rows.matrix.col));
         self.reals(rows.matrix.val.iter().chain(&rows.rhs).chain(&rows.compliance));

@@ -1,0 +1,21 @@
+//! The decks of `make counts`, dealt out: minutes.
+
+#[allow(dead_code)]
+#[path = "../../benches/counts/table.rs"]
+mod table;
+
+use super::{compare_on, Motions};
+
+/// `DECKS="cube slab"` picks those whose names contain one of the words.
+#[test]
+#[ignore]
+fn all_decks_of_counts_dealt_out_to_two_and_three_ranks_have_the_bits_of_one_rank() {
+    let wanted = std::env::var("DECKS").unwrap_or_default();
+    let wants = |name: &str| wanted.is_empty() || wanted.split(' ').any(|part| name.contains(part));
+    for case in table::cases().into_iter().filter(|case| wants(&case.name)) {
+        let begin = std::time::Instant::now();
+        let deck = case.model.build();
+        compare_on([2, 3], &case.name, 1, &deck, (Motions::Exact, ""));
+        println!("{}: {:.1} s", case.name, begin.elapsed().as_secs_f64());
+    }
+}
