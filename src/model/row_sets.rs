@@ -61,6 +61,15 @@ impl HostModel {
     }
 
     pub fn add_friction(&mut self, input: FrictionInput) -> Result<usize> {
+        self.add_nodes(input, true)
+    }
+
+    /// Nodes of a problem file, whose rows a table may have changed: they tell nothing of factors.
+    pub fn add_friction_of_file(&mut self, input: FrictionInput) -> Result<usize> {
+        self.add_nodes(input, false)
+    }
+
+    fn add_nodes(&mut self, input: FrictionInput, are_given: bool) -> Result<usize> {
         let given = input.rows;
         let (resolved, places) = self.named(given)?;
         let rows = resolved.as_ref().map_or(given, OwnedRows::input);
@@ -70,6 +79,7 @@ impl HostModel {
         let of = if is_named { &all[..] } else { &offsets[..] };
         // before the table takes entries from the rows, which then tell nothing of factors
         match self.table.as_ref().filter(|_| resolved.is_some()) {
+            _ if !are_given => {}
             Some(table) => {
                 Friction::check_factors(input, |row| table.entries(RowKind::Inequality, row), &WITH_NAMED)?;
             }

@@ -341,6 +341,8 @@ fn a_node_on_the_long_arm_of_a_pilot_has_friction() {
         let made = add(&mut problem, RowKind::Tangential, &[(3, -0.8 * factor), (4, 0.6 * factor)], 0.0);
         assert_eq!(made.is_ok(), ends, "{made:?}");
         problem.set_dof_table(table).unwrap();
+        // a file has the rows as the table has made them
+        Problem::new().read_bytes(&problem.write_bytes().unwrap()).unwrap();
     }
 }
 

@@ -214,7 +214,7 @@ impl Nodes {
         let _room = model.headroom_for_rows(self.s_old.len(), self.val.len())?;
         let rows = RowsInput { ptr: &self.ptr, body: Some(&body), dof: &dof, val: &self.val, rhs: None };
         let (coefficient, bound) = (Some(&self.coefficient[..]), Some(&self.bound[..]));
-        model.add_friction(FrictionInput {
+        model.add_friction_of_file(FrictionInput {
             dim: self.dim,
             normal: &self.normal,
             rows,
