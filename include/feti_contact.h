@@ -67,8 +67,10 @@
  *
  * Bodies: Give each body its stiffness matrix and its load.
  *     feti_body_add feti_body_stiffness_i32 feti_body_stiffness_i64 feti_body_stiffness_split_i32
- *     feti_body_stiffness_split_i64 feti_body_stiffness_dense feti_body_load feti_body_numbering_i32
- *     feti_body_numbering_i64 feti_dof_table_i32 feti_dof_table_i64
+ *     feti_body_stiffness_split_i64 feti_body_stiffness_skyline_i32 feti_body_stiffness_skyline_i64
+ *     feti_body_stiffness_triplets_i32 feti_body_stiffness_triplets_i64 feti_body_stiffness_dense
+ *     feti_body_load feti_body_numbering_i32 feti_body_numbering_i64 feti_dof_table_i32
+ *     feti_dof_table_i64
  *
  * Null spaces: Give the motions that a matrix does not resist; otherwise the library finds them.
  *     feti_body_coordinates feti_body_coordinates_flags feti_body_null_space feti_body_no_null_space
@@ -195,6 +197,10 @@ int32_t feti_problem_destroy(feti_problem **p);
  * permits.
  */
 #define FETI_BORROW 1
+/** Profile: every column goes from its first entry down to the diagonal. */
+#define FETI_SKYLINE_DOWN 0
+/** Profile: every column goes from the diagonal up to its first entry. */
+#define FETI_SKYLINE_UP 1
 /**
  * In place of a body number: all bodies. If they have numbers of the host (feti_body_numbering_i32 or
  * _i64), arrays use these numbers; after feti_dof_table_i32 or _i64 arrays have an entry for each unknown
@@ -269,6 +275,65 @@ int32_t feti_body_stiffness_split_i32(feti_problem *p, int64_t body, int64_t n, 
 int32_t feti_body_stiffness_split_i64(feti_problem *p, int64_t body, int64_t n, const double *diag,
                                       const int64_t *row_ptr, const int64_t *col, const double *val,
                                       int32_t base, int32_t storage, int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by its profile (skyline), with 32-bit indices.
+ *
+ * Column j of the upper triangle has all values between its first entry and the diagonal. With
+ * FETI_SKYLINE_DOWN and without `diag` they go from the first entry down to the diagonal, with
+ * FETI_SKYLINE_UP from the diagonal up; with `diag` the diagonal entry is not among them. COLSOL of Bathe
+ * has FETI_SKYLINE_UP, base 1, MAXA as `ptr` and A as `val`. FEAP has FETI_SKYLINE_DOWN, AD as `diag`, AU
+ * as `val`, and as `ptr` with base 0 a zero before JP(1) to JP(n).
+ *
+ * Another call replaces pattern and values. Zeros of the profile beside the diagonal are no entries of K;
+ * K is the matrix that has its other entries by rows. feti_body_values gives new values, or
+ * feti_body_values_split with `diag`. A diagonal entry that is negative, or 0 in a column with other
+ * entries, is refused by feti_setup, unless the motions of the body are FETI_SOFT (feti_body_null_space).
+ *
+ * @param diag      (n) K_ii, force per length; NULL: the columns contain the diagonal
+ * @param ptr       (n + 1) column j has the values `ptr[j]` to `ptr[j + 1] - 1`; starts with `base`
+ * @param val       (ptr[n] - base) entries of K, force per length
+ * @param base      0 or 1: what `ptr` counts from
+ * @param direction FETI_SKYLINE_DOWN or FETI_SKYLINE_UP
+ * @param flags     FETI_COPY, or FETI_BORROW, which also copies: the library cannot use a matrix in this
+ *                  form directly
+ */
+int32_t feti_body_stiffness_skyline_i32(feti_problem *p, int64_t body, int64_t n, const double *diag,
+                                        const int32_t *ptr, const double *val, int32_t base,
+                                        int32_t direction, int32_t flags);
+
+/** As feti_body_stiffness_skyline_i32, with 64-bit indices. */
+int32_t feti_body_stiffness_skyline_i64(feti_problem *p, int64_t body, int64_t n, const double *diag,
+                                        const int64_t *ptr, const double *val, int32_t base,
+                                        int32_t direction, int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by triplets of row, column and value, with 32-bit indices.
+ *
+ * The triplets may come in any order. Values at one place are added in their order: a host may pass the
+ * entries of its element matrices one after the other. Another call replaces pattern and values;
+ * feti_body_values gives new values in the same order. With FETI_FULL both triangles are given, and K must
+ * be symmetric within option symmetry_tolerance; the library averages K_ij and K_ji. A diagonal entry that
+ * is negative, or 0 in a row with other entries, is refused by feti_setup, unless the motions of the body
+ * are FETI_SOFT (feti_body_null_space).
+ *
+ * @param nnz     number of triplets
+ * @param row     (nnz) rows, counted from `base`
+ * @param col     (nnz) columns, counted from `base`
+ * @param val     (nnz) values, force per length
+ * @param base    0 or 1: what `row` and `col` count from
+ * @param storage FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param flags   FETI_COPY, or FETI_BORROW, which also copies: the library cannot use a matrix in this
+ *                form directly
+ */
+int32_t feti_body_stiffness_triplets_i32(feti_problem *p, int64_t body, int64_t n, int64_t nnz,
+                                         const int32_t *row, const int32_t *col, const double *val,
+                                         int32_t base, int32_t storage, int32_t flags);
+
+/** As feti_body_stiffness_triplets_i32, with 64-bit indices. */
+int32_t feti_body_stiffness_triplets_i64(feti_problem *p, int64_t body, int64_t n, int64_t nnz,
+                                         const int64_t *row, const int64_t *col, const double *val,
+                                         int32_t base, int32_t storage, int32_t flags);
 
 /**
  * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
@@ -1663,12 +1728,13 @@ int32_t feti_start_from(feti_problem *p, int32_t kind, int64_t rows, const doubl
  * Give new matrices and new rows to an existing problem. */
 
 /**
- * Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or _i64.
+ * Gives new values for a stiffness matrix that was given by rows, by its profile or by triplets.
  *
  * The values are copied and checked like the first ones. The library keeps the symbolic analysis, so the
  * next setup costs only a numeric factorisation of this body; bit-identical values cost nothing. The
- * storage is the one of the first call. FETI_STATE if the matrix has not been given, or was given in
- * another form.
+ * storage is the one of the first call. If a value of a profile was 0 and is not any more, K has a new
+ * entry: the next setup makes a new analysis, and the log reports it. A value of a profile that becomes 0
+ * stays an entry. FETI_STATE if the matrix has not been given, or was given in another form.
  *
  * Borrowed values (FETI_BORROW) are not copied: `val` is either the borrowed array, which the host has
  * rewritten, or another array that replaces it. The values count as changed, also for other bodies that
@@ -1681,14 +1747,15 @@ int32_t feti_start_from(feti_problem *p, int32_t kind, int64_t rows, const doubl
 int32_t feti_body_values(feti_problem *p, int64_t body, int64_t nnz, const double *val);
 
 /**
- * Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+ * Gives new values for a stiffness matrix that was given by rows or by its profile with a separate
+ * diagonal.
  *
  * The call works like feti_body_values, for a matrix with a separate diagonal. FETI_STATE if the matrix
  * has not been given, or was given in another form.
  *
  * @param diag (n) K_ii, force per length
  * @param nnz  number of off-diagonal values, as in the first call
- * @param val  (nnz) off-diagonal entries of K in the order of the first call, force per length
+ * @param val  (nnz) off-diagonal values of the first call, in its order, force per length
  */
 int32_t feti_body_values_split(feti_problem *p, int64_t body, int64_t n, const double *diag, int64_t nnz,
                                const double *val);

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::buffers::Digest;
 use super::host::Host;
-use super::{ask, friction, give, scenes, stiffness, whole};
+use super::{ask, forms, friction, give, scenes, stiffness, whole};
 
 /// Sequences run, and those of them in which a solve was certified (status FETI_OK, accepted by feti_check).
 pub static SEQUENCES: AtomicU64 = AtomicU64::new(0);
@@ -107,7 +107,7 @@ fn of_body(host: &mut Host, call: usize) {
                 let n = host.bodies[body].n;
                 host.bodies[body].k = super::models::any(&mut host.bytes, n).k;
             }
-            stiffness::stiffness(host, body);
+            forms::matrix(host, body);
         }
         5 => give::null_space(host, body),
         6 => give::coordinates(host, body),

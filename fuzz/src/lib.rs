@@ -10,7 +10,7 @@
 //! | `listeners` | what its functions for progress and log keep |
 //! | `scenes` | whole problems that have a solution |
 //! | `give`, `ask` | the calls that change a problem, and those that read it |
-//! | `stiffness` | matrices in every form, copied or lent, their new values, functions of the host |
+//! | `stiffness`, `forms` | matrices in every form, copied or lent, their new values, functions of the host |
 //! | `friction` | nodes with friction |
 //! | `whole` | calls over all bodies, numbers of the host, facts, log, options by one text |
 //! | `calls` | the target: a sequence of them |
@@ -22,6 +22,7 @@ pub mod buffers;
 pub mod bytes;
 pub mod calls;
 pub mod file;
+pub mod forms;
 pub mod friction;
 pub mod give;
 pub mod host;

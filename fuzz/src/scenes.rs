@@ -4,7 +4,7 @@ use super::bytes::Bytes;
 use super::give::{self, Row};
 use super::host::Host;
 use super::models::{self, Model};
-use super::stiffness;
+use super::{forms, stiffness};
 
 /// Bodies with their loads, rows of both kinds.
 struct Scene {
@@ -90,7 +90,7 @@ pub fn hand_over(host: &mut Host, which: usize) {
         if kept {
             stiffness::operator(host, body);
         } else {
-            stiffness::stiffness(host, body);
+            forms::matrix(host, body);
         }
         match known & 3 {
             _ if kept => give::null_space(host, body),

@@ -1,4 +1,4 @@
-//! Stiffness matrices in every form, their new values, and those the host keeps.
+//! Stiffness matrices by rows and dense, new values of every form, and those the host keeps.
 
 use std::ffi::c_void;
 
@@ -99,7 +99,7 @@ impl Sparse {
 type Arrays = (Vec<i64>, Vec<i64>, (Vec<i32>, Vec<i32>), Vec<f64>);
 
 /// A body has another matrix: what was lent for the one before is the host's again, and is freed.
-fn took(host: &mut Host, body: i64, given: Given, lent: Option<Arrays>) {
+pub fn took(host: &mut Host, body: i64, given: Given, lent: Option<Arrays>) {
     let (body, right) = (body as usize, !host.spoilt());
     host.bodies[body].given = right.then_some(given);
     host.lent[body] = lent.map_or_else(Lent::default, |(pointer, column, short, value)| Lent {
@@ -108,10 +108,9 @@ fn took(host: &mut Host, body: i64, given: Given, lent: Option<Arrays>) {
     });
 }
 
-/// The stiffness matrix of a body in one of its forms.
-pub fn stiffness(host: &mut Host, body: usize) {
+/// The stiffness matrix of a body by rows or dense.
+pub fn stiffness(host: &mut Host, body: usize, form: u8) {
     let n = host.bodies[body].n;
-    let form = host.bytes.byte();
     if form >> 4 & 3 == 0 {
         dense(host, body, [FETI_FULL, FETI_LOWER, FETI_UPPER][usize::from(form & 3) % 3]);
         return;

@@ -26,18 +26,18 @@
 !> host decides how to react to a failure (feti_last_error_detail returns the place); without stat a failure prints its
 !> text and stops the program. The module of each procedure, named below, describes it with shapes and units.
 module feti_contact
-  use feti_contact_c, only: FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_COPY, FETI_BORROW, FETI_ALL, FETI_EXACT, &
-    FETI_CANDIDATES, FETI_SOFT, FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, FETI_LINE2, FETI_LINE3, FETI_TRI3, &
-    FETI_TRI6, FETI_QUAD4, FETI_QUAD8, FETI_QUAD9, FETI_PLANE, FETI_SPHERE, FETI_CYLINDER, FETI_NODE_TO_FACE, &
-    FETI_MORTAR, FETI_TIED, FETI_FORCE, FETI_PRESSURE, FETI_SHEAR, FETI_GAP, FETI_SLIP, FETI_AREA, FETI_NORMAL, &
-    FETI_CLOSED, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, &
-    FETI_ROW_UNKNOWN, FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP, FETI_FRICTION_WEAK, &
-    FETI_FRICTION_UNKNOWN, FETI_ORIGIN_EXACT, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_FOUND, &
-    FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, &
-    FETI_STEP_NEWTON, FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE, FETI_LOG_STEP, FETI_OK, FETI_ITERATIONS, &
-    FETI_TIME, FETI_CANCELLED, FETI_STALLED, FETI_INACCURATE, FETI_MARGINAL, FETI_MEMORY, FETI_HANDLE, FETI_BUSY, &
-    FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, FETI_GAPS_CONTRADICT, FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, &
-    FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_SLIDES, FETI_COMMUNICATION, FETI_ARGUMENT, &
+  use feti_contact_c, only: FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_COPY, FETI_BORROW, FETI_SKYLINE_DOWN, &
+    FETI_SKYLINE_UP, FETI_ALL, FETI_EXACT, FETI_CANDIDATES, FETI_SOFT, FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, &
+    FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8, FETI_QUAD9, FETI_PLANE, FETI_SPHERE, &
+    FETI_CYLINDER, FETI_NODE_TO_FACE, FETI_MORTAR, FETI_TIED, FETI_FORCE, FETI_PRESSURE, FETI_SHEAR, FETI_GAP, &
+    FETI_SLIP, FETI_AREA, FETI_NORMAL, FETI_CLOSED, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, FETI_ROW_OPEN, &
+    FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_ROW_UNKNOWN, FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP, &
+    FETI_FRICTION_WEAK, FETI_FRICTION_UNKNOWN, FETI_ORIGIN_EXACT, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, &
+    FETI_ORIGIN_FOUND, FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, &
+    FETI_STEP_RELEASE, FETI_STEP_NEWTON, FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE, FETI_LOG_STEP, FETI_OK, &
+    FETI_ITERATIONS, FETI_TIME, FETI_CANCELLED, FETI_STALLED, FETI_INACCURATE, FETI_MARGINAL, FETI_MEMORY, FETI_HANDLE, &
+    FETI_BUSY, FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, FETI_GAPS_CONTRADICT, FETI_NULL_SPACE, FETI_INDEFINITE, &
+    FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_SLIDES, FETI_COMMUNICATION, FETI_ARGUMENT, &
     FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, FETI_CONTACT_VERSION_PATCH
   use feti_contact_bodies, only: feti_body_facts, feti_body_add => body_add, feti_body_null_space => body_null_space, &
     feti_body_no_null_space => body_no_null_space, feti_body_coordinates => body_coordinates, &
@@ -49,7 +49,8 @@ module feti_contact
     feti_body_held_forces => body_held_forces, feti_body_pieces => body_pieces
   use feti_contact_file, only: feti_problem_write => problem_write, feti_problem_read => problem_read
   use feti_contact_stiffness, only: feti_body_stiffness => body_stiffness, &
-    feti_body_stiffness_split => body_stiffness_split, feti_body_stiffness_borrow => body_stiffness_borrow, &
+    feti_body_stiffness_split => body_stiffness_split, feti_body_stiffness_skyline => body_stiffness_skyline, &
+    feti_body_stiffness_triplets => body_stiffness_triplets, feti_body_stiffness_borrow => body_stiffness_borrow, &
     feti_body_values => body_values, feti_body_values_borrow => body_values_borrow, &
     feti_body_values_split => body_values_split
   use feti_contact_rows, only: feti_rows_add => rows_add, feti_rows_rhs => rows_rhs, feti_rows_compliance => rows_compliance, &

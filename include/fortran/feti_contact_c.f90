@@ -41,6 +41,10 @@ module feti_contact_c
   integer(c_int32_t), parameter :: FETI_COPY = 0_c_int32_t
   !> Stiffness flag: keep using the caller's arrays (values, and 32-bit 0-based columns) if the layout permits.
   integer(c_int32_t), parameter :: FETI_BORROW = 1_c_int32_t
+  !> Profile: every column goes from its first entry down to the diagonal.
+  integer(c_int32_t), parameter :: FETI_SKYLINE_DOWN = 0_c_int32_t
+  !> Profile: every column goes from the diagonal up to its first entry.
+  integer(c_int32_t), parameter :: FETI_SKYLINE_UP = 1_c_int32_t
   !> In place of a body number: all bodies. If they have numbers of the host (feti_body_numbering_i32 or _i64), arrays
   !> use these numbers; after feti_dof_table_i32 or _i64 arrays have an entry for each unknown of the table.
   integer(c_int64_t), parameter :: FETI_ALL = -1_c_int64_t
@@ -96,6 +100,52 @@ module feti_contact_c
       integer(c_int64_t), value :: body, n
       real(c_double), intent(in) :: diag(*)
       integer(c_int64_t), intent(in) :: row_ptr(*), col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base, storage, flags
+    end function
+
+    !> Gives the stiffness matrix K of a body by its profile (skyline), with 32-bit indices.
+    integer(c_int32_t) function feti_body_stiffness_skyline_i32(p, body, n, diag, ptr, val, base, direction, flags) &
+      bind(C, name="feti_body_stiffness_skyline_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body, n
+      type(c_ptr), value :: diag
+      integer(c_int32_t), intent(in) :: ptr(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base, direction, flags
+    end function
+
+    !> As feti_body_stiffness_skyline_i32, with 64-bit indices.
+    integer(c_int32_t) function feti_body_stiffness_skyline_i64(p, body, n, diag, ptr, val, base, direction, flags) &
+      bind(C, name="feti_body_stiffness_skyline_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body, n
+      type(c_ptr), value :: diag
+      integer(c_int64_t), intent(in) :: ptr(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base, direction, flags
+    end function
+
+    !> Gives the stiffness matrix K of a body by triplets of row, column and value, with 32-bit indices.
+    integer(c_int32_t) function feti_body_stiffness_triplets_i32(p, body, n, nnz, row, col, val, base, storage, flags) &
+      bind(C, name="feti_body_stiffness_triplets_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body, n, nnz
+      integer(c_int32_t), intent(in) :: row(*), col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base, storage, flags
+    end function
+
+    !> As feti_body_stiffness_triplets_i32, with 64-bit indices.
+    integer(c_int32_t) function feti_body_stiffness_triplets_i64(p, body, n, nnz, row, col, val, base, storage, flags) &
+      bind(C, name="feti_body_stiffness_triplets_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body, n, nnz
+      integer(c_int64_t), intent(in) :: row(*), col(*)
       real(c_double), intent(in) :: val(*)
       integer(c_int32_t), value :: base, storage, flags
     end function
@@ -1084,7 +1134,7 @@ module feti_contact_c
   ! Give new matrices and new rows to an existing problem.
 
   interface
-    !> Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or _i64.
+    !> Gives new values for a stiffness matrix that was given by rows, by its profile or by triplets.
     integer(c_int32_t) function feti_body_values(p, body, nnz, val) bind(C, name="feti_body_values")
       import
       type(c_ptr), value :: p
@@ -1092,7 +1142,7 @@ module feti_contact_c
       real(c_double), intent(in) :: val(*)
     end function
 
-    !> Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+    !> Gives new values for a stiffness matrix that was given by rows or by its profile with a separate diagonal.
     integer(c_int32_t) function feti_body_values_split(p, body, n, diag, nnz, val) bind(C, &
       name="feti_body_values_split")
       import

@@ -23,6 +23,14 @@ module feti_contact_f77_base
     procedure feti_body_stiffness_split_i32, feti_body_stiffness_split_i64
   end interface
   !> For index arrays of the host.
+  interface feti_body_stiffness_skyline
+    procedure feti_body_stiffness_skyline_i32, feti_body_stiffness_skyline_i64
+  end interface
+  !> For index arrays of the host.
+  interface feti_body_stiffness_triplets
+    procedure feti_body_stiffness_triplets_i32, feti_body_stiffness_triplets_i64
+  end interface
+  !> For index arrays of the host.
   interface feti_body_mesh
     procedure feti_body_mesh_i32, feti_body_mesh_i64
   end interface

@@ -207,8 +207,30 @@ recursive subroutine ftbspl(ip, ibody, n, diag, iptr, icol, val, istor, ierr)
     narrow(istor), FETI_COPY), [1, 2, 3, 4, 5, 6, 7, 0, 8, 0])
 end subroutine
 
-!> Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or _i64. C:
-!> feti_body_values.
+!> Gives the stiffness matrix K of a body by its profile (skyline). The columns contain the diagonal, as in COLSOL. C:
+!> feti_body_stiffness_skyline.
+recursive subroutine ftbsky(ip, ibody, n, maxa, val, idir, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, ibody, n, maxa(*), idir
+  real(c_double), intent(in) :: val(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_stiffness_skyline(handle(ip), from_zero(ibody), wide(n), c_null_ptr, maxa, val, 1_c_int32_t, &
+    narrow(idir), FETI_COPY), [1, 2, 3, 0, 4, 5, 0, 6, 0])
+end subroutine
+
+!> Gives the stiffness matrix K of a body by triplets of row, column and value. C: feti_body_stiffness_triplets.
+recursive subroutine ftbtri(ip, ibody, n, nnz, irow, icol, val, istor, ierr)
+  use feti_contact_f77_base
+  integer, intent(in) :: ip, ibody, n, nnz, irow(*), icol(*), istor
+  real(c_double), intent(in) :: val(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_stiffness_triplets(handle(ip), from_zero(ibody), wide(n), wide(nnz), irow, icol, val, &
+    1_c_int32_t, narrow(istor), FETI_COPY), [1, 2, 3, 4, 5, 6, 7, 0, 8, 0])
+end subroutine
+
+!> Gives new values for a stiffness matrix that was given by rows, by its profile or by triplets. C: feti_body_values.
 recursive subroutine ftbval(ip, ibody, nnz, val, ierr)
   use feti_contact_f77_base
   integer, intent(in) :: ip, ibody, nnz
@@ -218,7 +240,7 @@ recursive subroutine ftbval(ip, ibody, nnz, val, ierr)
   ierr = told(feti_body_values(handle(ip), from_zero(ibody), wide(nnz), val))
 end subroutine
 
-!> Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64. C:
+!> Gives new values for a stiffness matrix that was given by rows or by its profile with a separate diagonal. C:
 !> feti_body_values_split.
 recursive subroutine ftbvsp(ip, ibody, n, diag, nnz, val, ierr)
   use feti_contact_f77_base

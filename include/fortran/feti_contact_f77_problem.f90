@@ -188,3 +188,24 @@ recursive subroutine ftcnts(ip, nbody, n, m, me, ierr)
   m = numbers(3)
   me = numbers(4)
 end subroutine
+
+!> Gives the stiffness matrix K of a body by its profile with the diagonal diag(n) apart: jp(j) is the position of the last value of
+!> column j, and 0 until a column has one, as in FEAP. C: feti_body_stiffness_skyline.
+recursive subroutine ftbskd(ip, ibody, n, diag, jp, val, idir, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n, jp(*), idir
+  real(c_double), intent(in) :: diag(*), val(*)
+  integer, intent(out) :: ierr
+  integer, allocatable :: ptr(:)
+  integer :: columns, refused
+
+  columns = int(readable(ip, max(n, 0)))
+  ierr = FTEMEM
+  allocate (ptr(columns + 1), stat=refused)
+  if (refused /= 0) return
+  ptr(1) = 0
+  ptr(2:) = jp(:columns)
+  ierr = told(feti_body_stiffness_skyline(handle(ip), from_zero(ibody), wide(n), reals(diag, .true.), ptr, val, &
+    0_c_int32_t, narrow(idir), FETI_COPY), [1, 2, 3, 4, 5, 6, 0, 7, 0])
+end subroutine

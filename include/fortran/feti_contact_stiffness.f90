@@ -10,8 +10,8 @@ module feti_contact_stiffness
   use feti_contact_c, c_error_detail => feti_error_detail, c_option => feti_option, c_phase => feti_phase
   implicit none
   private
-  public :: body_stiffness, body_stiffness_split, body_stiffness_borrow, body_values, body_values_borrow
-  public :: body_values_split
+  public :: body_stiffness, body_stiffness_split, body_stiffness_skyline, body_stiffness_triplets
+  public :: body_stiffness_borrow, body_values, body_values_borrow, body_values_split
 
   !> Gives the stiffness matrix K of a body by rows.
   !>
@@ -39,6 +39,27 @@ module feti_contact_stiffness
     module procedure split_int32, split_int64
   end interface
 
+  !> Gives the stiffness matrix K of a body by its profile (skyline).
+  !>
+  !> call feti_body_stiffness_skyline(p, body, ptr, val, direction, diag): ptr int32 or int64.
+  !>
+  !> ptr(n + 1): column j has the values `ptr(j)` to `ptr(j + 1) - 1`. val(:): entries of K, force per length.
+  !> direction: FETI_SKYLINE_DOWN or FETI_SKYLINE_UP. diag(n): K_ii, force per length.
+  !>
+  !> COLSOL: maxa, a and FETI_SKYLINE_UP. FEAP: [1, jp + 1], au, FETI_SKYLINE_DOWN and ad.
+  interface body_stiffness_skyline
+    module procedure skyline_int32, skyline_int64
+  end interface
+
+  !> Gives the stiffness matrix K of a body by triplets of row, column and value.
+  !>
+  !> call feti_body_stiffness_triplets(p, body, n, row, col, val, storage): row and col int32 or int64.
+  !>
+  !> n: unknowns of the body. val(nnz): values, force per length. storage: FETI_FULL, FETI_LOWER or FETI_UPPER.
+  interface body_stiffness_triplets
+    module procedure triplets_int32, triplets_int64
+  end interface
+
   !> Gives the stiffness matrix K of a body by rows.
   !>
   !> call feti_body_stiffness_borrow(p, body, row_ptr, col, val, storage): works like feti_body_stiffness by rows, with
@@ -55,9 +76,10 @@ module feti_contact_stiffness
     module procedure borrow_int32, borrow_int64
   end interface
 
-  !> Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or _i64.
+  !> Gives new values for a stiffness matrix that was given by rows, by its profile or by triplets.
   !>
-  !> call feti_body_values(p, body, val): for a matrix by rows, val in the same order as in the first call.
+  !> call feti_body_values(p, body, val): for a matrix by rows, by its profile or by triplets, val in the same order as
+  !>   in the first call.
   !> call feti_body_values(p, body, k): for a matrix k(n,n), in the same storage.
   !>
   !> k(n,n): force per length.
@@ -165,6 +187,92 @@ contains
   end subroutine
 
   !> int32.
+  recursive subroutine skyline_int32(p, body, ptr, val, direction, diag, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int32), intent(in), contiguous :: ptr(:)
+    real(real64), intent(in), contiguous :: val(:)
+    integer(c_int32_t), intent(in) :: direction
+    real(real64), intent(in), contiguous, optional, target :: diag(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(ptr) == 0) then
+      call refuse(5, 'feti_body_stiffness_skyline: ptr is empty, it has one entry more than the body has unknowns', stat, errmsg)
+    else if (size_of(diag, size(ptr, kind=int64) - 1) /= size(ptr, kind=int64) - 1) then
+      call refuse(4, 'feti_body_stiffness_skyline: diag has not one entry per unknown', stat, errmsg)
+    else if (ptr(size(ptr)) - 1 > size(val, kind=int64)) then
+      call refuse(5, 'feti_body_stiffness_skyline: ptr points behind the end of val', stat, errmsg)
+    else
+      call finish(feti_body_stiffness_skyline_i32(handle_of(p), int(body - 1, c_int64_t), size(ptr, kind=c_int64_t) - 1, &
+        address_of(diag), ptr, val, 1_c_int32_t, direction, FETI_COPY), stat, errmsg)
+    end if
+  end subroutine
+
+  !> int64.
+  recursive subroutine skyline_int64(p, body, ptr, val, direction, diag, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int64), intent(in), contiguous :: ptr(:)
+    real(real64), intent(in), contiguous :: val(:)
+    integer(c_int32_t), intent(in) :: direction
+    real(real64), intent(in), contiguous, optional, target :: diag(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(ptr) == 0) then
+      call refuse(5, 'feti_body_stiffness_skyline: ptr is empty, it has one entry more than the body has unknowns', stat, errmsg)
+    else if (size_of(diag, size(ptr, kind=int64) - 1) /= size(ptr, kind=int64) - 1) then
+      call refuse(4, 'feti_body_stiffness_skyline: diag has not one entry per unknown', stat, errmsg)
+    else if (ptr(size(ptr)) - 1 > size(val, kind=int64)) then
+      call refuse(5, 'feti_body_stiffness_skyline: ptr points behind the end of val', stat, errmsg)
+    else
+      call finish(feti_body_stiffness_skyline_i64(handle_of(p), int(body - 1, c_int64_t), size(ptr, kind=c_int64_t) - 1, &
+        address_of(diag), ptr, val, 1_c_int32_t, direction, FETI_COPY), stat, errmsg)
+    end if
+  end subroutine
+
+  !> int32.
+  recursive subroutine triplets_int32(p, body, n, row, col, val, storage, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body, n
+    integer(int32), intent(in), contiguous :: row(:), col(:)
+    real(real64), intent(in), contiguous :: val(:)
+    integer(c_int32_t), intent(in) :: storage
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(col) /= size(row)) then
+      call refuse(6, 'feti_body_stiffness_triplets: row and col differ in size', stat, errmsg)
+    else if (size(val) /= size(row)) then
+      call refuse(7, 'feti_body_stiffness_triplets: row and val differ in size', stat, errmsg)
+    else
+      call finish(feti_body_stiffness_triplets_i32(handle_of(p), int(body - 1, c_int64_t), int(n, c_int64_t), &
+        size(row, kind=c_int64_t), row, col, val, 1_c_int32_t, storage, FETI_COPY), stat, errmsg)
+    end if
+  end subroutine
+
+  !> int64.
+  recursive subroutine triplets_int64(p, body, n, row, col, val, storage, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body, n
+    integer(int64), intent(in), contiguous :: row(:), col(:)
+    real(real64), intent(in), contiguous :: val(:)
+    integer(c_int32_t), intent(in) :: storage
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(col) /= size(row)) then
+      call refuse(6, 'feti_body_stiffness_triplets: row and col differ in size', stat, errmsg)
+    else if (size(val) /= size(row)) then
+      call refuse(7, 'feti_body_stiffness_triplets: row and val differ in size', stat, errmsg)
+    else
+      call finish(feti_body_stiffness_triplets_i64(handle_of(p), int(body - 1, c_int64_t), int(n, c_int64_t), &
+        size(row, kind=c_int64_t), row, col, val, 1_c_int32_t, storage, FETI_COPY), stat, errmsg)
+    end if
+  end subroutine
+
+  !> int32.
   recursive subroutine borrow_int32(p, body, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -224,7 +332,7 @@ contains
     end if
   end subroutine
 
-  !> Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or _i64. For a borrowed
+  !> Gives new values for a stiffness matrix that was given by rows, by its profile or by triplets. For a borrowed
   !> matrix: the host has rewritten its array, or val points to another one, to which the rules of
   !> feti_body_stiffness_borrow apply. val(nnz): entries of K in the order of the first call, force per length.
   recursive subroutine body_values_borrow(p, body, val, stat, errmsg)
@@ -242,8 +350,8 @@ contains
     end if
   end subroutine
 
-  !> Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64. diag(n): K_ii,
-  !> force per length. val(nnz): off-diagonal entries of K in the order of the first call, force per length.
+  !> Gives new values for a stiffness matrix that was given by rows or by its profile with a separate diagonal. diag(n):
+  !> K_ii, force per length. val(nnz): off-diagonal values of the first call, in its order, force per length.
   recursive subroutine body_values_split(p, body, diag, val, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

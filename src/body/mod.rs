@@ -11,6 +11,7 @@ mod coarse;
 mod digits;
 mod elsewhere;
 mod fixing;
+mod form;
 mod generalized_inverse;
 mod given;
 mod grounded;
@@ -35,11 +36,13 @@ mod probe;
 mod rigid_modes;
 mod rounded;
 mod search;
+mod skyline;
 mod soft;
 mod spectrum;
 mod stiffness;
 mod storage;
 mod store;
+mod triplets;
 mod values;
 
 pub(crate) use crate::ranks::{wire_struct, wire_unit};
@@ -58,6 +61,7 @@ pub use elsewhere::{
     ask, Asking, Away, BodyElsewhere, BodyThere, Elsewhere, Entered, Facts, FormElsewhere, GivenThere,
     HostLoad, InIsland, Joining, LoadThere, Name, Owed, PartThere, ABOUT_BODIES,
 };
+pub use form::Form;
 pub use generalized_inverse::{Factorised, GeneralizedInverse};
 pub use given::Stiffness;
 pub use grounded::grounded;
@@ -73,10 +77,12 @@ pub use pilots::{Carried, Pilots};
 pub use plan::Plan;
 pub use planning::Planning;
 pub use rigid_modes::Coordinates;
+pub use skyline::{Direction, Skyline, SkylineInput};
 pub use spectrum::Doubt;
 pub use stiffness::{check_diagonal, check_finite, from_dense, from_sparse, from_split};
 pub use storage::{SparseInput, Storage};
-pub use values::{Form, Places};
+pub use triplets::{TripletInput, Triplets};
+pub use values::Places;
 
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::body::{
     check_finite, from_borrowed, from_dense, from_sparse, from_split, same_matrix, same_pattern, Columns,
-    Form, Places, SparseInput, Storage,
+    Form, Places, Skyline, SkylineInput, SparseInput, Storage, TripletInput, Triplets,
 };
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::same_bits;
@@ -28,6 +28,25 @@ impl HostModel {
         let stiffness = from_split(k, diag, tolerance).map_err(|e| e.body(body))?;
         let form = Form::Sparse(Places::of(k, true, &stiffness)?);
         self.keep_stiffness(body, stiffness, form)
+    }
+
+    pub fn set_stiffness_skyline(
+        &mut self,
+        body: usize,
+        diag: Option<&[f64]>,
+        k: SkylineInput<'_>,
+    ) -> Result<()> {
+        self.check_length(body, "n", k.ptr.len() - 1)?;
+        diag.map_or(Ok(()), |diag| self.check_length(body, "n", diag.len()))?;
+        let (profile, stiffness) = Skyline::of(k, diag).map_err(|e| e.body(body))?;
+        self.keep_stiffness(body, stiffness, Form::Skyline(profile))
+    }
+
+    pub fn set_stiffness_triplets(&mut self, body: usize, n: usize, k: TripletInput<'_>) -> Result<()> {
+        self.check_length(body, "n", n)?;
+        let tolerance = self.settings.symmetry_tolerance;
+        let (triplets, stiffness) = Triplets::of(n, k, tolerance).map_err(|e| e.body(body))?;
+        self.keep_stiffness(body, stiffness, Form::Triplets(triplets))
     }
 
     pub fn set_stiffness_dense(
@@ -77,7 +96,8 @@ impl HostModel {
     }
 
     pub fn values(&self, body: usize, split: bool) -> Result<usize> {
-        self.places(body, split).map(Places::entries)
+        let form = self.form(body)?;
+        form.values(split).ok_or_else(|| another_call(body, form))
     }
 
     pub fn set_values(&mut self, body: usize, val: &[f64]) -> Result<()> {
@@ -86,16 +106,6 @@ impl HostModel {
 
     pub fn set_values_split(&mut self, body: usize, diag: &[f64], val: &[f64]) -> Result<()> {
         self.give_values(body, Some(diag), val)
-    }
-
-    fn new_values(&self, body: usize, diag: Option<&[f64]>, val: &[f64]) -> Result<Vec<f64>> {
-        let places = self.places(body, diag.is_some())?;
-        let diag = diag.unwrap_or(&[]);
-        if places.is_split() {
-            self.check_length(body, "n", diag.len())?;
-        }
-        places.check_number(val.len())?;
-        places.values(self.stiffness(body)?, diag, val, self.settings.symmetry_tolerance)
     }
 
     pub fn set_values_dense(&mut self, body: usize, n: usize, k: &[f64], ld: usize) -> Result<()> {
@@ -111,7 +121,11 @@ impl HostModel {
     }
 
     fn give_values(&mut self, body: usize, diag: Option<&[f64]>, val: &[f64]) -> Result<()> {
-        let new = self.new_values(body, diag, val).map_err(|e| e.body(body))?;
+        self.check_values(body, diag.is_some(), val.len())?;
+        diag.map_or(Ok(()), |diag| self.check_length(body, "n", diag.len()))?;
+        let (k, form, diag) = (self.stiffness(body)?, self.form(body)?, diag.unwrap_or(&[]));
+        let new = form.new_values(k, diag, val, self.settings.symmetry_tolerance);
+        let Some(new) = new.map_err(|e| e.body(body))? else { return self.grow(body, diag, val) };
         let stiffness = self.bodies[body].body.stiffness.as_mut();
         let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
         let old = k.replace_values(new);
@@ -119,12 +133,33 @@ impl HostModel {
         self.change(body, Change::unless(unchanged, Change::Values)).map(drop)
     }
 
+    /// Values of a profile with entries that its matrix does not have.
+    fn grow(&mut self, body: usize, diag: &[f64], val: &[f64]) -> Result<()> {
+        let Form::Skyline(profile) = self.form(body)? else { return Err(not_given(body)) };
+        let stiffness = Arc::new(profile.matrix(diag, val).map_err(|e| e.body(body))?);
+        let given = self.change(body, Change::Pattern)?;
+        given.body.stiffness = Some(stiffness);
+        if let Some(Form::Skyline(profile)) = given.form.as_deref_mut() {
+            profile.has_grown = true;
+        }
+        Ok(())
+    }
+
+    fn check_values(&self, body: usize, split: bool, values: usize) -> Result<()> {
+        let entries = self.values(body, split)?;
+        if values == entries {
+            return Ok(());
+        }
+        let error = Error::argument("nnz", format!("the pattern has {entries} entries, not {values}"));
+        Err(error.body(body).value(values as f64).limit(entries as f64))
+    }
+
     pub fn is_borrowed(&self, body: usize) -> bool {
         self.stiffness(body).is_ok_and(|k| k.val.is_of_host())
     }
 
     pub fn borrow_values(&mut self, body: usize, val: Borrowed<f64>) -> Result<()> {
-        self.places(body, false)?.check_number(val.len()).map_err(|e| e.body(body))?;
+        self.check_values(body, false, val.len())?;
         let stiffness = self.bodies[body].body.stiffness.as_mut();
         let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
         let old = k.replace_values(val);
@@ -152,13 +187,6 @@ impl HostModel {
     fn form(&self, body: usize) -> Result<&Form> {
         self.given(body)?.form.as_deref().ok_or_else(|| not_given(body))
     }
-
-    fn places(&self, body: usize, split: bool) -> Result<&Places> {
-        match self.form(body)? {
-            Form::Sparse(places) if places.is_split() == split => Ok(places),
-            form => Err(another_call(body, form)),
-        }
-    }
 }
 
 fn not_given(body: usize) -> Error {
@@ -167,12 +195,7 @@ fn not_given(body: usize) -> Error {
 }
 
 fn another_call(body: usize, form: &Form) -> Error {
-    let (given, call) = match form {
-        Form::Dense(_) => ("dense", "feti_body_values_dense"),
-        Form::Elements(_) => ("by elements", "feti_body_element"),
-        Form::Sparse(places) if places.is_split() => ("with a separate diagonal", "feti_body_values_split"),
-        Form::Sparse(_) => ("by rows", "feti_body_values"),
-    };
+    let (given, call) = form.told();
     let what = format!("the stiffness matrix was given {given}: give new values by {call}");
     Error::new(Kind::State, what).body(body)
 }

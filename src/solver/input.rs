@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::body::{Columns, HostFunctions, Modes, SparseInput, Storage};
+use crate::body::{Columns, HostFunctions, Modes, SkylineInput, SparseInput, Storage, TripletInput};
 use crate::constraints::{DofTableInput, FrictionInput, RowKind, RowsInput};
 use crate::error::Result;
 use crate::linalg::Borrowed;
@@ -68,6 +68,13 @@ input! {
     /// `K_p` by rows without its diagonal `diag`, length n.
     fn set_stiffness_split(&mut self, body: usize, diag: &[f64], k: SparseInput<'_>) -> Result<()>;
 
+    /// `K_p` by the columns of its upper triangle, each from its first entry on, with its diagonal in them or in `diag`, length n. Zeros beside
+    /// the diagonal are no entries of `K_p`.
+    fn set_stiffness_skyline(&mut self, body: usize, diag: Option<&[f64]>, k: SkylineInput<'_>) -> Result<()>;
+
+    /// `K_p` by triplets in any order, n x n; values at one place are added, in the order of the triplets.
+    fn set_stiffness_triplets(&mut self, body: usize, n: usize, k: TripletInput<'_>) -> Result<()>;
+
     /// `K_p` column-major with leading dimension `ld`, n x n.
     fn set_stiffness_dense(&mut self, body: usize, n: usize, k: &[f64], ld: usize,
         storage: Storage) -> Result<()>;
@@ -77,7 +84,8 @@ input! {
     fn borrow_stiffness(&mut self, body: usize, ptr: &[usize], col: Columns<'_>,
         val: Borrowed<f64>) -> Result<bool>;
 
-    /// New values for the pattern given last, in the host's order; the analysis is kept.
+    /// New values for the pattern given last, in the host's order; the analysis is kept. If a value of a profile was 0 and is not any more,
+    /// the pattern changes, and the analysis with it; a value that becomes 0 stays an entry.
     fn set_values(&mut self, body: usize, val: &[f64]) -> Result<()>;
 
     /// As `set_values`, for a matrix without its diagonal `diag`, length n.
@@ -199,7 +207,7 @@ input! {
     /// Number of unknowns of a body.
     fn order(&self, body: usize) -> Result<usize>;
 
-    /// Number of values of a matrix by rows, without those of a separate diagonal (`split`).
+    /// Number of values of a matrix by rows, by its profile or by triplets, without those of a separate diagonal (`split`).
     fn values(&self, body: usize, split: bool) -> Result<usize>;
 
     /// The storage of a dense matrix.

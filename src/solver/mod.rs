@@ -24,7 +24,10 @@ mod together;
 mod told;
 mod undetermined;
 
-pub use crate::body::{Columns, Digits, Doubt, HostFunctions, HostProduct, Modes, SparseInput, Storage};
+pub use crate::body::{
+    Columns, Digits, Direction, Doubt, HostFunctions, HostProduct, Modes, SkylineInput, SparseInput, Storage,
+    TripletInput,
+};
 pub use crate::certificate::{Certificate, Entry, FrictionState};
 pub use crate::constraints::{DofTableInput, FrictionInput, RowKind, RowsInput};
 pub use crate::error::Proof;

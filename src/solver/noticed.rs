@@ -1,5 +1,6 @@
 //! Log lines about properties of the data that the host may not have intended.
 
+use crate::body::Form;
 use crate::constraints::{FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::Csr;
@@ -40,6 +41,20 @@ pub fn data(log: &Log, model: &HostModel) -> Result<()> {
         }
     }
     friction(log, model)
+}
+
+/// Notes: profiles whose new values need a new analysis. The result of the host's function is ignored: other ranks wait for this call.
+pub fn grown(log: &Log, model: &mut HostModel) {
+    for body in 0..model.bodies.len() {
+        let Some(Form::Skyline(profile)) = model.bodies[body].form.as_deref_mut() else { continue };
+        if !std::mem::take(&mut profile.has_grown) {
+            continue;
+        }
+        let body = model.number_of(Counted::Body, body);
+        let _ = log.say(LogLevel::Phase, || {
+            format!("note: body {body}: a value of the profile of K was 0 and is not any more: the new pattern is analysed")
+        });
+    }
 }
 
 /// Notes: a coefficient of friction that is rather a percentage or an angle, a tangential row that is the normal row, rows

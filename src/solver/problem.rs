@@ -65,6 +65,7 @@ impl Problem {
 
     /// Makes null spaces, factors and dual operators that are missing or out of date.
     pub fn setup(&mut self) -> Result<()> {
+        noticed::grown(&self.host.log, &mut self.model);
         if self.set_up_together()? {
             return Ok(());
         }
@@ -94,6 +95,7 @@ impl Problem {
     /// Solves (10)-(11) for the present loads and gaps. An incomplete answer is kept; the report says how good it is. If
     /// a group of bodies has no answer, the error says why, and the answers of the other groups are kept.
     pub fn solve(&mut self) -> Result<Report> {
+        noticed::grown(&self.host.log, &mut self.model);
         if let Some(report) = self.solve_together()? {
             return Ok(report);
         }

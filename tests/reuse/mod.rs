@@ -2,6 +2,7 @@
 
 mod bodies;
 mod borrowed;
+mod forms;
 mod rows;
 mod values;
 

@@ -3,6 +3,7 @@
 mod body;
 mod body_info;
 mod elements;
+mod forms;
 mod null_space;
 mod numbering;
 mod operator;
@@ -12,6 +13,7 @@ mod values;
 pub use body::*;
 pub use body_info::*;
 pub use elements::*;
+pub use forms::*;
 pub use null_space::*;
 pub use numbering::*;
 pub use operator::*;

@@ -180,7 +180,7 @@ pub unsafe extern "C" fn feti_body_stiffness_dense(
     })
 }
 
-fn storage_of(storage: i32) -> Result<Storage> {
+pub fn storage_of(storage: i32) -> Result<Storage> {
     let known = [(FETI_FULL, Storage::Full), (FETI_LOWER, Storage::Lower), (FETI_UPPER, Storage::Upper)];
     meaning(storage, "storage", &known, "none of FETI_FULL, FETI_LOWER, FETI_UPPER")
 }

@@ -4,11 +4,13 @@ use crate::bodies::body::body_of_order;
 use crate::boundary::{borrowed, call, column_major, enter, id, input, same};
 use crate::header::types::feti_problem;
 
-/// Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or _i64.
+/// Gives new values for a stiffness matrix that was given by rows, by its profile or by triplets.
 ///
 /// The values are copied and checked like the first ones. The library keeps the symbolic analysis, so the next setup
 /// costs only a numeric factorisation of this body; bit-identical values cost nothing. The storage is the one of the
-/// first call. FETI_STATE if the matrix has not been given, or was given in another form.
+/// first call. If a value of a profile was 0 and is not any more, K has a new entry: the next setup makes a new analysis, and the
+/// log reports it. A value of a profile that becomes 0 stays an entry. FETI_STATE if the matrix has not been given, or was given in
+/// another form.
 ///
 /// Borrowed values (FETI_BORROW) are not copied: `val` is either the borrowed array, which the host has rewritten, or
 /// another array that replaces it. The values count as changed, also for other bodies that borrow the same array. After a
@@ -38,7 +40,7 @@ pub unsafe extern "C" fn feti_body_values(p: *mut feti_problem, body: i64, nnz: 
     })
 }
 
-/// Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+/// Gives new values for a stiffness matrix that was given by rows or by its profile with a separate diagonal.
 ///
 /// The call works like feti_body_values, for a matrix with a separate diagonal. FETI_STATE if the matrix has not been
 /// given, or was given in another form.
@@ -50,7 +52,7 @@ pub unsafe extern "C" fn feti_body_values(p: *mut feti_problem, body: i64, nnz: 
 /// | `n` | in | scalar | unknowns of the body |
 /// | `diag` | in | n | K_ii, force per length |
 /// | `nnz` | in | scalar | number of off-diagonal values, as in the first call |
-/// | `val` | in | nnz | off-diagonal entries of K in the order of the first call, force per length |
+/// | `val` | in | nnz | off-diagonal values of the first call, in its order, force per length |
 ///
 /// # Safety
 /// The arrays have the given shapes.

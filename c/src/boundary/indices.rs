@@ -54,6 +54,15 @@ pub unsafe fn element_pointers<I: Index>(from: *const I, elements: usize, base: 
     unsafe { positions(from, elements, base, ("ptr", Error::element)) }
 }
 
+/// Argument `ptr` of a profile, like `row_ptr`.
+///
+/// # Safety
+/// As for [`pointers`].
+pub unsafe fn column_pointers<I: Index>(from: *const I, columns: usize, base: i64) -> Result<Vec<usize>> {
+    // SAFETY: guaranteed by the caller.
+    unsafe { positions(from, columns, base, ("ptr", Error::dof)) }
+}
+
 /// Argument `ptr` of a table of unknowns, like `row_ptr`.
 ///
 /// # Safety

@@ -63,6 +63,11 @@ pub const FETI_LOWER: i32 = 1;
 /// Storage: entries with column >= row are given.
 pub const FETI_UPPER: i32 = 2;
 
+/// Profile: every column goes from its first entry down to the diagonal.
+pub const FETI_SKYLINE_DOWN: i32 = 0;
+/// Profile: every column goes from the diagonal up to its first entry.
+pub const FETI_SKYLINE_UP: i32 = 1;
+
 /// Null-space flag: the columns span the null space.
 pub const FETI_EXACT: i32 = 0;
 /// Null-space flag: the null space lies in the span of the columns, and the library selects it from there.

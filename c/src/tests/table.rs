@@ -4,7 +4,7 @@ use std::ptr::{null, null_mut};
 
 use crate::*;
 
-pub const SOURCES: [&str; 26] = [
+pub const SOURCES: [&str; 27] = [
     include_str!("../bodies/body.rs"),
     include_str!("../bodies/body_info.rs"),
     include_str!("../bodies/elements.rs"),
@@ -12,6 +12,7 @@ pub const SOURCES: [&str; 26] = [
     include_str!("../dof_table.rs"),
     include_str!("../boundary/error_store.rs"),
     include_str!("../file.rs"),
+    include_str!("../bodies/forms.rs"),
     include_str!("../friction.rs"),
     include_str!("../log.rs"),
     include_str!("../bodies/null_space.rs"),
@@ -58,6 +59,10 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_stiffness_dense(0, 0, null(), 0, 0, 0);
         feti_body_stiffness_split_i32(0, 0, null(), null(), null(), null(), 0, 0, 0);
         feti_body_stiffness_split_i64(0, 0, null(), null(), null(), null(), 0, 0, 0);
+        feti_body_stiffness_skyline_i32(0, 0, null(), null(), null(), 0, 0, 0);
+        feti_body_stiffness_skyline_i64(0, 0, null(), null(), null(), 0, 0, 0);
+        feti_body_stiffness_triplets_i32(0, 0, 0, null(), null(), null(), 0, 0, 0);
+        feti_body_stiffness_triplets_i64(0, 0, 0, null(), null(), null(), 0, 0, 0);
         feti_body_values(0, 0, null());
         feti_body_values_split(0, 0, null(), 0, null());
         feti_body_values_dense(0, 0, null(), 0);

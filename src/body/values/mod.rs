@@ -11,28 +11,6 @@ const WHAT: &str = "new values of a stiffness matrix";
 /// Position of an entry that the host does not give.
 const NONE: usize = usize::MAX;
 
-/// The form in which the host gave a matrix and will give new values.
-#[derive(Debug, PartialEq)]
-pub enum Form {
-    Sparse(Places),
-    Dense(Storage),
-    /// By elements, with this total number of entries.
-    Elements(usize),
-}
-
-impl Form {
-    /// Number of entries that the host gives for n unknowns.
-    pub fn entries(&self, n: usize) -> usize {
-        match self {
-            Self::Sparse(places) if places.apart => n + places.entries,
-            Self::Sparse(places) => places.entries,
-            Self::Dense(Storage::Full) => n * n,
-            Self::Dense(_) => n * (n + 1) / 2,
-            Self::Elements(entries) => *entries,
-        }
-    }
-}
-
 /// Positions of the host's values in the lower triangle. If rows have ascending columns, with both sides of the diagonal
 /// in full storage, the triangle itself determines the positions.
 #[derive(Debug, PartialEq)]
@@ -89,15 +67,6 @@ impl Places {
     /// Number of values, without those of a separate diagonal.
     pub fn entries(&self) -> usize {
         self.entries
-    }
-
-    pub fn check_number(&self, values: usize) -> Result<()> {
-        let entries = self.entries;
-        if values == entries {
-            return Ok(());
-        }
-        let error = Error::argument("nnz", format!("the pattern has {entries} entries, not {values}"));
-        Err(error.value(values as f64).limit(entries as f64))
     }
 
     /// True if the diagonal is a separate array.

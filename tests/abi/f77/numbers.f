@@ -31,6 +31,7 @@ C     the host: 5 4 of the chain, 3 2 of the bar, 1 of the point.
       CALL SAME(RF(FTBENT), 3D0, 'entries of the bar')
       CALL HOLDS(RF(FTBERR) .GE. 0D0 .AND. RF(FTBERR) .LT. 1D-9,
      &  'error of the forces on the bar')
+      CALL FORMS(IP)
       DO 10 I = 1, 2
         CALL FTBNUM(IP, I, 2, INUM(2 * I - 1), IERR)
    10   CALL OK(IERR, 'FTBNUM')
@@ -86,4 +87,57 @@ C     first, a spring 2. A load 4 on the second is 12 on the spring.
       CALL SAME(U(2), 18.5D0, 'the unknown of the table')
       CALL FTFREE(IP, IERR)
       CALL OK(IERR, 'FTFREE')
+      END
+
+C     The bar by its profile, as COLSOL and FEAP store it, and by
+C     triplets; new values are those of the beginning, 50 and -50.
+      SUBROUTINE FORMS(IP)
+      INCLUDE 'feti_contact_f77.inc'
+      INTEGER IP, IERR, MAXA(3), JP(2), LATE(3), IROW(4), ICOL(4)
+      DOUBLE PRECISION A(3), B(3), D(2), D0(2), AU(1), AU0(1), V(4)
+      DOUBLE PRECISION V0(4)
+      DATA MAXA / 1, 2, 4 /, JP / 0, 1 /, LATE / 2, 3, 5 /
+      DATA IROW / 2, 1, 2, 1 /, ICOL / 1, 1, 2, 1 /
+      DATA A / 1D2, 1D2, -1D2 /, B / 5D1, 5D1, -5D1 /
+      DATA D / 1D2, 1D2 /, D0 / 5D1, 5D1 /, AU / -1D2 /, AU0 / -5D1 /
+      DATA V / -1D2, 3D1, 1D2, 7D1 /, V0 / -5D1, 3D1, 5D1, 2D1 /
+      CALL FTBSKY(IP, 2, 2, LATE, A, FTSKUP, IERR)
+      CALL HOLDS(IERR .EQ. FTEARG - 4, 'a profile from 2')
+      CALL FTBSKY(IP, 2, 2, MAXA, A, 2, IERR)
+      CALL HOLDS(IERR .EQ. FTEARG - 6, 'direction 2')
+      CALL FTBSKY(IP, 2, 2, MAXA, A, FTSKUP, IERR)
+      CALL OK(IERR, 'FTBSKY')
+      CALL BAREND(IP, -0.4D0, 'a profile')
+      CALL FTBVAL(IP, 2, 3, B, IERR)
+      CALL OK(IERR, 'FTBVAL of a profile')
+      CALL BAREND(IP, -0.5D0, 'new values of a profile')
+      CALL FTBSKD(IP, 2, 1000, D, JP, AU, FTSKDN, IERR)
+      CALL HOLDS(IERR .EQ. FTEARG - 3, '1000 unknowns')
+      CALL FTBSKD(IP, 2, 2, D, JP, AU, 2, IERR)
+      CALL HOLDS(IERR .EQ. FTEARG - 7, 'direction 2')
+      CALL FTBSKD(IP, 2, 2, D, JP, AU, FTSKDN, IERR)
+      CALL OK(IERR, 'FTBSKD')
+      CALL BAREND(IP, -0.4D0, 'a profile with its diagonal apart')
+      CALL FTBVSP(IP, 2, 2, D0, 1, AU0, IERR)
+      CALL OK(IERR, 'FTBVSP of a profile')
+      CALL BAREND(IP, -0.5D0, 'its new values')
+      CALL FTBTRI(IP, 2, 2, 4, IROW, ICOL, V, FTUPPR, IERR)
+      CALL HOLDS(IERR .EQ. FTEARG - 6, 'an entry below the diagonal')
+      CALL FTBTRI(IP, 2, 2, 4, IROW, ICOL, V, FTLOWR, IERR)
+      CALL OK(IERR, 'FTBTRI')
+      CALL BAREND(IP, -0.4D0, 'triplets')
+      CALL FTBVAL(IP, 2, 4, V0, IERR)
+      CALL OK(IERR, 'FTBVAL of triplets')
+      CALL BAREND(IP, -0.5D0, 'new values of triplets')
+      END
+
+C     The end of the bar, -0.4 with 100, -0.5 with 50.
+      SUBROUTINE BAREND(IP, BYHAND, WHAT)
+      INTEGER IP, IERR
+      CHARACTER*(*) WHAT
+      DOUBLE PRECISION BYHAND, U(2)
+      CALL SOLVES(IP, 10D0, -0.3D0, WHAT)
+      CALL FTDISP(IP, 2, 2, U, IERR)
+      CALL OK(IERR, 'FTDISP')
+      CALL SAME(U(2), BYHAND, WHAT)
       END

@@ -16,6 +16,8 @@ program values
 
   call by_rows
   call split
+  call profile
+  call triplets
   call dense
   call borrowed
   call refused
@@ -140,6 +142,72 @@ contains
       call feti_body_stiffness_split(p, 1, diag, ptr, [2, 2], entries(second, row, col), FETI_UPPER, stat)
       call require(stat == FETI_ARGUMENT - 6, 'an entry on the diagonal')
       call check_step(p, second, before, [0, 0], 'after refused calls')
+      call feti_problem_destroy(p)
+    end do
+  end subroutine
+
+  !> The columns of the upper triangle, from the diagonal upwards, and downwards beside a diagonal of its own.
+  subroutine profile
+    type(feti_problem) :: p
+    integer(int64) :: before(2)
+    integer :: wide, stat
+    integer, parameter :: maxa(4) = [1, 2, 4, 6], row(5) = [1, 2, 1, 3, 2], col(5) = [1, 2, 2, 3, 3]
+    integer, parameter :: beside(4) = [1, 1, 2, 3]
+
+    do wide = 0, 1
+      before = 0
+      call begin(p)
+      if (wide == 0) then
+        call feti_body_stiffness_skyline(p, 1, maxa, entries(first, row, col), FETI_SKYLINE_UP)
+      else
+        call feti_body_stiffness_skyline(p, 1, int(maxa, int64), entries(first, row, col), FETI_SKYLINE_UP)
+      end if
+      call check_step(p, first, before, [1, 1], 'a profile')
+      call feti_body_values(p, 1, entries(second, row, col))
+      call check_step(p, second, before, [0, 1], 'new values of a profile')
+      call feti_body_stiffness_skyline(p, 1, beside, entries(first, [1, 2], [2, 3]), FETI_SKYLINE_DOWN, &
+        entries(first, [1, 2, 3], [1, 2, 3]))
+      call check_step(p, first, before, [0, 1], 'a profile beside a diagonal')
+      call feti_body_values_split(p, 1, entries(second, [1, 2, 3], [1, 2, 3]), entries(second, [1, 2], [2, 3]))
+      call check_step(p, second, before, [0, 1], 'new values beside a diagonal')
+      call feti_body_stiffness_skyline(p, 1, maxa, entries(first, row(:4), col(:4)), FETI_SKYLINE_UP, stat=stat)
+      call require(stat == FETI_ARGUMENT - 5, 'fewer values than the profile says')
+      call feti_body_stiffness_skyline(p, 1, maxa(:0), entries(first, row, col), FETI_SKYLINE_UP, stat=stat)
+      call require(stat == FETI_ARGUMENT - 5, 'a profile without columns')
+      call feti_body_stiffness_skyline(p, 1, beside, entries(first, [1, 2], [2, 3]), FETI_SKYLINE_UP, [1.0_dp], stat)
+      call require(stat == FETI_ARGUMENT - 4, 'a diagonal too short')
+      call check_step(p, second, before, [0, 0], 'after refused profiles')
+      call feti_problem_destroy(p)
+    end do
+  end subroutine
+
+  !> Two of the triplets stand at one place.
+  subroutine triplets
+    type(feti_problem) :: p
+    integer(int64) :: before(2)
+    integer :: wide, stat
+    integer, parameter :: row(6) = [3, 2, 1, 3, 2, 2], col(6) = [2, 2, 1, 3, 1, 2]
+    real(dp), parameter :: part(6) = [1.0_dp, 0.5_dp, 1.0_dp, 1.0_dp, 1.0_dp, 0.5_dp]
+
+    do wide = 0, 1
+      before = 0
+      call begin(p)
+      if (wide == 0) then
+        call feti_body_stiffness_triplets(p, 1, n, row, col, part * entries(first, row, col), FETI_LOWER)
+      else
+        call feti_body_stiffness_triplets(p, 1, n, int(row, int64), int(col, int64), part * entries(first, row, col), &
+          FETI_LOWER)
+      end if
+      call check_step(p, first, before, [1, 1], 'triplets')
+      call feti_body_values(p, 1, part * entries(second, row, col))
+      call check_step(p, second, before, [0, 1], 'new values of triplets')
+      call feti_body_stiffness_triplets(p, 1, n, row, col(:5), part * entries(first, row, col), FETI_LOWER, stat)
+      call require(stat == FETI_ARGUMENT - 6, 'fewer columns than rows')
+      call feti_body_stiffness_triplets(p, 1, n, row, col, first, FETI_LOWER, stat)
+      call require(stat == FETI_ARGUMENT - 7, 'fewer values than rows')
+      call feti_body_stiffness_triplets(p, 1, n, row, col, part * entries(first, row, col), FETI_UPPER, stat)
+      call require(stat == FETI_ARGUMENT - 6, 'triplets of the other triangle')
+      call check_step(p, second, before, [0, 0], 'after refused triplets')
       call feti_problem_destroy(p)
     end do
   end subroutine

@@ -25,8 +25,9 @@ pub const SECTIONS: [Section; 23] = [
         feti_problem, feti_problem_create, feti_problem_destroy,
     ]),
     section!("Bodies", "Give each body its stiffness matrix and its load.", [
-        FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_COPY, FETI_BORROW, FETI_ALL,
+        FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_COPY, FETI_BORROW, FETI_SKYLINE_DOWN, FETI_SKYLINE_UP, FETI_ALL,
         feti_body_add, feti_body_stiffness_i32, feti_body_stiffness_i64, feti_body_stiffness_split_i32, feti_body_stiffness_split_i64,
+        feti_body_stiffness_skyline_i32, feti_body_stiffness_skyline_i64, feti_body_stiffness_triplets_i32, feti_body_stiffness_triplets_i64,
         feti_body_stiffness_dense, feti_body_load, feti_body_numbering_i32, feti_body_numbering_i64,
         feti_dof_table_i32, feti_dof_table_i64,
     ]),
