@@ -142,7 +142,7 @@ build/demo/%_fortran: examples_fortran/%.f90 $(SHARED_FORTRAN) stage
 # FORTRAN 77: the face in place of the module's users, and the include file.
 build/demo/%_fortran: examples_fortran/%.f $(MODULES) $(wildcard include/fortran/*.inc) stage
 	@mkdir -p $(@D)/$*
-	@$(FC) $(FCFLAGS) -Iinclude/fortran -J$(@D)/$* $(MODULES) $< -o $@ $(LINK)
+	@$(FC) $(FCFLAGS) -std=legacy -Iinclude/fortran -J$(@D)/$* $(MODULES) $< -o $@ $(LINK)
 
 demo: setup
 	@$(MAKE) --no-print-directory data $(PROGRAMS)

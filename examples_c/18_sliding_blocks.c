@@ -229,7 +229,7 @@ int main(void)
         }
         longest = iterations > longest ? iterations : longest;
         get_results(&c, now, &r);
-        printf("step %d: %2d iterations, %2d nodes touch, %2d slip, force on the foot %9.4f N up, %9.4f N along\n", step, iterations,
+        printf("step %d: %2d iterations, %2d nodes touch, %2d slip, force on the foot %11.6f N up, %11.6f N along\n", step, iterations,
                (int)r.facts.closed, (int)r.facts.slipping, r.facts.force[1], r.facts.force[0]);
     }
     end_contact(&c);

@@ -66,7 +66,7 @@ program sliding_blocks
     longest = max(longest, iterations)
     call get_results
     along = facts%force(1)
-    print '(a, i0, a, i2, a, i2, a, i2, a, f9.4, a, f9.4, a)', 'step ', step, ': ', iterations, ' iterations, ', facts%closed, &
+    print '(a, i0, a, i2, a, i2, a, i2, a, f11.6, a, f11.6, a)', 'step ', step, ': ', iterations, ' iterations, ', facts%closed, &
       ' nodes touch, ', facts%slipping, ' slip, force on the foot ', facts%force(2), ' N up, ', along, ' N along'
   end do
   call end_contact

@@ -17,12 +17,14 @@ endfunction()
 set(silent sh "${PROJECT_ROOT}/tests/cmake/silent.sh")
 set(same_numbers sh "${PROJECT_ROOT}/tests/examples/twins.sh")
 file(GLOB examples CONFIGURE_DEPENDS "${PROJECT_ROOT}/examples_fortran/[0-9]*.f90" "${PROJECT_ROOT}/examples_fortran/[0-9]*.f")
-list(FILTER examples EXCLUDE REGEX "/1[5-7]_") # MPI has its modules from gfortran
+list(FILTER examples EXCLUDE REGEX "/(1[5-7]|20)_") # MPI has its modules from gfortran, 20 is below
 foreach(path IN LISTS examples)
   get_filename_component(example "${path}" NAME_WE)
   flang_claim("example ${example} reaches the reference and prints the numbers of its twin in C"
               ${same_numbers} "$<TARGET_FILE:${example}_c>" "${flang_bin}/example_${example}" "${FETI_DATA}" "${flang_work}/pictures/${example}")
 endforeach()
+flang_claim("example 20 has the forces of example 18" sh "${PROJECT_ROOT}/tests/examples/same_forces.sh"
+            "${flang_bin}/example_20_skyline_host" $<TARGET_FILE:18_sliding_blocks_c>)
 foreach(driver reference_cases coordinates watched operator log cholmod_oracle)
   flang_claim("driver ${driver}" ${silent} "${flang_bin}/${driver}" "${FETI_DATA}")
 endforeach()
