@@ -52,7 +52,7 @@ impl Size {
     /// Multiplications of a factorisation of K_p, at least; infinite if the factor is the host's.
     pub fn factorisation(&self) -> f64 {
         let [n, l] = [self.unknowns, self.entries].map(|count| count as f64);
-        if self.entries == 0 {
+        if self.is_of_host() {
             f64::INFINITY
         } else {
             (l / n).max(THIN).powi(2) * n
@@ -75,10 +75,14 @@ impl Size {
         }
     }
 
-    /// The cost of the host's K+ is not known: F_p is assembled, so that the number of calls in a setup is known in
-    /// advance, and load steps need few calls.
+    /// The factor is the host's.
+    pub fn is_of_host(&self) -> bool {
+        self.entries == 0
+    }
+
+    /// The cost of the host's K+ is not known: use decides when F_p is assembled (`ledger`).
     fn prefers_implicit(&self) -> bool {
-        if self.entries == 0 {
+        if self.is_of_host() {
             return false;
         }
         if self.rounded {

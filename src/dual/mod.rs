@@ -12,6 +12,7 @@ mod alike;
 mod cost;
 mod coupling;
 mod elsewhere;
+mod ledger;
 mod multiples;
 mod operator;
 mod preconditioner;
@@ -22,13 +23,14 @@ mod turned;
 pub use cost::{all_bytes, implicit_bodies, DistinctRows, Size};
 pub use coupling::dependent_rows;
 pub use elsewhere::Form;
+pub use ledger::Ledger;
 pub use operator::Accuracy;
 pub use preconditioner::{constrained, Boundary, BoundaryStiffness, Preconditioner};
 pub use reuse::{ColumnCounts, Kept};
 pub use turned::{TurnedFace, TurnedRow};
 
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::body::{Coarse, GeneralizedInverse, InIsland, Joining, LocalDual, Token};
 use crate::constraints::Touched;
@@ -55,11 +57,20 @@ struct Subdomain {
     multiples: Multiples,
     /// `B K_p+ B'`, the part of F_p between T and T'; none: F_p is applied through K_p+. On another rank it may be F_p, not assembled.
     operator: Option<Form>,
+    /// F_p that may be assembled later.
+    later: Option<Box<Later>>,
     /// Power of two by which `K_p+` and its products are multiplied, so that forces of all bodies have one unit.
     by: f64,
     /// Multiplications of a product with F_p, and of a factorisation of K_p.
     work: usize,
     factorisation: f64,
+}
+
+/// F_p of a body whose K+ is a function of the host.
+struct Later {
+    ledger: Arc<Ledger>,
+    /// `B K_p+ B'`, once assembled during a solve.
+    form: OnceLock<Form>,
 }
 
 pub struct Dual {
@@ -87,6 +98,8 @@ pub struct BodyShare {
     pub size: Size,
     /// F_p is applied matrix-free.
     pub implicit: bool,
+    /// If it decides when F_p is assembled.
+    pub ledger: Option<Arc<Ledger>>,
 }
 
 /// A dual problem whose operators `F_p` are still to be assembled, body by body, in any order.
@@ -107,8 +120,14 @@ impl Draft {
         let mut first = 0;
         for (part, (rows, matrix)) in parts.into_iter().zip(local) {
             let (multiples, own) = Multiples::of(&matrix);
+            let is_kept =
+                part.ledger.as_ref().is_some_and(|ledger| ledger.opened(part.kept.as_deref(), &own));
             let reuse = (!part.implicit).then(|| Reuse::of(part.kept, &part.kplus, &own));
-            distinct.push((own, reuse));
+            let is_due = |reuse: &Reuse| {
+                let ledger = part.ledger.as_ref();
+                is_kept || ledger.is_none_or(|ledger| ledger.expects(reuse.columns().computed))
+            };
+            distinct.push((own, reuse.filter(is_due)));
             let modes = first..first + part.kplus.motions();
             first = modes.end;
             subdomains.push(Subdomain {
@@ -119,6 +138,7 @@ impl Draft {
                 matrix,
                 multiples,
                 operator: None,
+                later: part.ledger.map(|ledger| Box::new(Later { ledger, form: OnceLock::new() })),
                 by: part.by,
                 work: part.size.work(part.implicit),
                 factorisation: part.size.factorisation(),
@@ -180,10 +200,11 @@ impl Draft {
 }
 
 impl Dual {
-    /// The assembled operators of the bodies with their rows, for a dual problem with other rows.
+    /// The operators of the bodies with their rows, for a dual problem with other rows; of those that stay matrix-free none.
     pub fn operators(&self) -> Vec<Option<Box<Kept>>> {
         let kept = |s: &Subdomain| {
-            s.explicit().map(|of| Box::new(Kept::new(Multiples::of(&s.matrix).1, of.clone())))
+            let is_kept = s.explicit().is_some() || s.later.is_some();
+            is_kept.then(|| Box::new(Kept::new(Multiples::of(&s.matrix).1, s.explicit().cloned())))
         };
         self.subdomains.iter().map(kept).collect()
     }

@@ -2,9 +2,13 @@
 //! = B_p (K_p+ (B_p'x))` (implicit). Also entries of F, gathered from the operators of the bodies and the compliance of
 //! the rows.
 
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::Arc;
+
 use crate::body::Asking;
 use crate::dual::elsewhere::{Each, Form};
-use crate::dual::{Dual, InParallel, Subdomain};
+use crate::dual::multiples::Multiples;
+use crate::dual::{Dual, InParallel, Ledger, Subdomain};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Csr, Entries, Matrix, Operator};
 use crate::platform::memory::zeros;
@@ -25,7 +29,8 @@ pub enum Accuracy {
 impl Subdomain {
     /// `F_p x`, x over all rows of B, the product over the rows of the body.
     fn product(&self, x: &[f64], by: Accuracy) -> Result<Vec<f64>> {
-        if let Some(Form::Own(explicit)) = &self.operator {
+        self.spend(Ledger::multiplies)?;
+        if let Some(Form::Own(explicit)) = self.form() {
             let local = self.multiples.gather(&self.rows, x);
             let mut image = vec![0.0; local.len()];
             explicit.apply(&local, &mut image);
@@ -68,9 +73,26 @@ impl Subdomain {
         image
     }
 
+    /// F_p, unless it is applied through K+ here.
+    fn form(&self) -> Option<&Form> {
+        self.operator.as_ref().or_else(|| self.later.as_ref()?.form.get())
+    }
+
     /// The assembled operator.
     pub(super) fn explicit(&self) -> Option<&Form> {
-        self.operator.as_ref().filter(|form| form.is_explicit())
+        self.form().filter(|form| form.is_explicit())
+    }
+
+    /// Counts a use of F_p, and assembles it if that is due.
+    fn spend(&self, used: impl Fn(&Ledger, usize) -> bool) -> Result<()> {
+        let Some(later) = &self.later else { return Ok(()) };
+        if used(&later.ledger, self.multiples.count) && self.explicit().is_none() {
+            let rows = Multiples::of(&self.matrix).1;
+            let made = Form::Own(Arc::new(self.kplus.inverse_form(&rows)?));
+            later.form.get_or_init(|| made);
+            later.ledger.assembled.fetch_add(rows.rows(), Relaxed);
+        }
+        Ok(())
     }
 }
 
@@ -133,6 +155,13 @@ impl Dual {
         self.subdomains.iter().map(|s| s.factorisation).sum()
     }
 
+    /// A solve begins, which may use F_p longer than the last.
+    pub fn begin(&self) {
+        let open = self.subdomains.iter().filter(|s| s.explicit().is_none());
+        let later = open.filter_map(|s| Some((s.later.as_ref()?, s.multiples.count)));
+        later.for_each(|(later, columns)| later.ledger.begin(columns));
+    }
+
     /// Number of bodies with an assembled operator.
     pub fn explicit_bodies(&self) -> usize {
         self.subdomains.iter().filter(|s| s.explicit().is_some()).count()
@@ -169,7 +198,7 @@ impl Operator for Dual {
     }
 
     fn bytes_kept(&self) -> usize {
-        self.subdomains.iter().filter_map(|s| s.operator.as_ref()).map(|of| of.bytes_kept()).sum()
+        self.subdomains.iter().filter_map(Subdomain::form).map(Form::bytes_kept).sum()
     }
 }
 
@@ -198,7 +227,8 @@ impl Subdomain {
             let entry = |i, j| self.multiples.entry(i, j, of);
             add(common, |k, l| self.by * entry(common[k].1, common[l].1), block);
         };
-        match &self.operator {
+        self.spend(|ledger, columns| ledger.spends(common.len(), columns))?;
+        match self.form() {
             Some(Form::Own(form)) => {
                 add_entries(&|i, j| form.get(i, j));
                 return Ok(());
@@ -240,7 +270,6 @@ mod tests {
     use crate::constraints::Touched;
     use crate::dual::{BodyShare, Draft, Size};
     use crate::linalg::{Operator, Symmetric};
-    use std::sync::Arc;
 
     /// Two chains of 8 springs, held at one end, with rows on each chain and between them.
     fn dual(implicit: bool) -> Dual {
@@ -253,7 +282,7 @@ mod tests {
         let part = || {
             let made = GeneralizedInverse::plan(k.clone().into(), &none, 1e-8).unwrap().execute().unwrap();
             let size = Size::default();
-            BodyShare { kplus: Arc::new(made.inverse), by: 1.0, kept: None, size, implicit }
+            BodyShare { kplus: Arc::new(made.inverse), by: 1.0, kept: None, size, implicit, ledger: None }
         };
         let mut rows = Csr::empty(16);
         rows.push_row([(2, 1.0), (9, -0.5)]);

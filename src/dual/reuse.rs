@@ -10,10 +10,10 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, START};
 use crate::linalg::{Csr, Packed};
 
-/// `F_p` and the rows of B over body p for which it was made.
+/// `F_p` and the rows of B over body p for which it was made, or, not assembled, would have been.
 pub struct Kept {
     rows: Arc<Csr>,
-    operator: Form,
+    operator: Option<Form>,
 }
 
 /// Counts of the columns of dual operators, one for each row and body that it touches.
@@ -35,12 +35,21 @@ pub(super) enum Reuse {
 }
 
 impl Kept {
-    pub(super) fn new(rows: Arc<Csr>, operator: Form) -> Self {
+    pub(super) fn new(rows: Arc<Csr>, operator: Option<Form>) -> Self {
         Self { rows, operator }
     }
 
     pub fn bytes(&self) -> usize {
-        self.operator.bytes_kept()
+        self.operator.as_ref().map_or(0, Form::bytes_kept)
+    }
+
+    pub(super) fn is_assembled(&self) -> bool {
+        self.operator.is_some()
+    }
+
+    /// At least half of these rows are among its own.
+    pub(super) fn has_most(&self, rows: &Csr) -> bool {
+        2 * matched(&self.rows, rows).iter().flatten().count() >= rows.rows()
     }
 }
 
@@ -53,7 +62,7 @@ impl Sum for ColumnCounts {
 impl Reuse {
     pub fn of(kept: Option<Box<Kept>>, kplus: &GeneralizedInverse, rows: &Csr) -> Self {
         let m = rows.rows();
-        let Some(kept) = kept else { return Self::Nothing(m) };
+        let Some(kept) = kept.filter(|kept| kept.is_assembled()) else { return Self::Nothing(m) };
         let old = matched(&kept.rows, rows);
         if m == kept.rows.rows() && old.iter().enumerate().all(|(i, old)| *old == Some(i)) {
             return Self::All(Mutex::new(Some(kept)), m);
@@ -86,11 +95,11 @@ impl Reuse {
             (Self::All(kept, _), _) => {
                 let kept = kept.lock().ok().and_then(|mut kept| kept.take());
                 let twice = || Error::new(Kind::Internal, "a dual operator was asked for twice");
-                return kept.map(|kept| kept.operator).ok_or_else(twice);
+                return kept.and_then(|kept| kept.operator).ok_or_else(twice);
             }
             (Self::Some { kept, old }, Some(host)) => match &kept.operator {
-                Form::Own(before) => extended(before, old, host, rows)?,
-                Form::Elsewhere(_) => kplus.inverse_form(rows)?,
+                Some(Form::Own(before)) => extended(before, old, host, rows)?,
+                Some(Form::Elsewhere(_)) | None => kplus.inverse_form(rows)?,
             },
             _ => kplus.inverse_form(rows)?,
         };

@@ -96,7 +96,7 @@ settings! {
     preconditioner: Preconditioning = Str(Preconditioning::WORDS[0]), NO_RANGE,
         c"Preconditioner of the dual problem: automatic (lumped if products with F are expensive, otherwise none); none; lumped (stiffness of the constrained unknowns with all other unknowns held); dirichlet (all other unknowns free: fewer steps, but one more factorisation of each body). For a body with functions of the host, the preconditioner uses the diagonal.";
     dual_operator: OperatorForm = Str(OperatorForm::WORDS[0]), NO_RANGE,
-        c"Form of the dual operator of a body: explicit (assembled: a product reads 4 m^2 bytes for m rows); implicit (matrix-free: a product takes two triangular solves, which needs less memory but is slower); automatic (chosen by a model of the time; explicit for a body with functions of the host; implicit if memory_limit leaves no room).";
+        c"Form of the dual operator of a body: explicit (assembled: a product reads 4 m^2 bytes for m rows); implicit (matrix-free: a product takes two triangular solves, which needs less memory but is slower); automatic (chosen by a model of the time; a body with functions of the host begins implicit and becomes explicit when its products have cost as much; implicit if memory_limit leaves no room).";
     method: Method = Str(Method::WORDS[0]), NO_RANGE,
         c"Method for the dual problem: proportioning on its feasible set; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and without another method where it gives up.";
     start: StartFrom = Str(StartFrom::WORDS[0]), NO_RANGE,

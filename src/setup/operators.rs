@@ -11,6 +11,8 @@ pub struct Operators {
     options: Options,
     pub sizes: Vec<Size>,
     pub implicit: Vec<bool>,
+    /// An operator whose K+ is a function of the host is assembled when use shows that it pays.
+    pub may_wait: bool,
     /// Bytes of all operators.
     pub bytes: usize,
     /// Bytes of all factors, shared factors counted once, plus the largest work arrays of their computation.
@@ -25,7 +27,8 @@ impl Operators {
     pub fn new(settings: &Settings, sizes: Vec<Size>, factor_bytes: usize) -> Self {
         let implicit = implicit(settings, &sizes, factor_bytes);
         let bytes = all_bytes(&sizes, &implicit);
-        Self { options: options(settings), sizes, implicit, bytes, factor_bytes }
+        let may_wait = may_wait(settings);
+        Self { options: options(settings), sizes, implicit, may_wait, bytes, factor_bytes }
     }
 
     /// Work of the assembly of each, in operations.
@@ -42,8 +45,10 @@ impl Operators {
 
     /// Whether these options lead to the present choice.
     pub fn suit(&self, settings: &Settings) -> bool {
+        let of_host = || self.sizes.iter().any(Size::is_of_host);
         options(settings) == self.options
             || implicit(settings, &self.sizes, self.factor_bytes) == self.implicit
+                && (may_wait(settings) == self.may_wait || !of_host())
     }
 
     /// Extends the error of insufficient memory by the body that takes most.
@@ -71,6 +76,10 @@ fn implicit(settings: &Settings, sizes: &[Size], factor_bytes: usize) -> Vec<boo
             implicit_bodies(sizes, memory_limit(settings).map(|limit| limit.saturating_sub(factor_bytes)))
         }
     }
+}
+
+fn may_wait(settings: &Settings) -> bool {
+    settings.dual_operator == OperatorForm::Automatic
 }
 
 fn options(settings: &Settings) -> Options {

@@ -1,11 +1,12 @@
 //! Data computed from a model, and the revisions of the model from which they were computed.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 
 use crate::body::{Asking, BodyElsewhere, Carried, Elsewhere, GeneralizedInverse, Lending, Owed, Token};
 use crate::certificate::LoadOfWhole;
-use crate::dual::Kept;
+use crate::dual::{Kept, Ledger};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
 use crate::model::{BodyRevisions, Parts, Revisions, SolvedModel};
@@ -19,6 +20,8 @@ use crate::setup::ready::Ready;
 pub struct Prepared {
     pub(super) bodies: Vec<PreparedBody>,
     pub(super) duals: Option<Duals>,
+    /// Of bodies whose K+ is a function of the host: they decide when F_p is assembled.
+    pub(super) ledgers: BTreeMap<usize, Arc<Ledger>>,
     pub work: Work,
     /// The ranks to which bodies may be lent.
     pub lending: Option<Lending>,
@@ -113,9 +116,16 @@ impl Prepared {
         islands.filter_map(|ready| ready.pairs.as_ref()).for_each(|pairs| pairs.forget());
     }
 
+    /// Work of all setups, and of operators that were assembled during solves.
+    pub fn work(&self) -> Work {
+        let later: usize = self.ledgers.values().map(|ledger| ledger.assembled.load(Ordering::Relaxed)).sum();
+        Work { columns_computed: self.work.columns_computed + later, ..self.work }
+    }
+
     /// Drops all data: the numbers of the bodies have changed.
     pub fn forget(&mut self) {
-        (self.bodies, self.duals) = (Vec::new(), None);
+        self.work = self.work();
+        (self.bodies, self.duals, self.ledgers) = (Vec::new(), None, BTreeMap::new());
     }
 
     /// As `duals`, after a setup.

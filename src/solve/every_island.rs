@@ -26,6 +26,7 @@ pub fn solve_islands<'a>(
 ) -> Result<Ends<'a>> {
     let mut ends = Ends::new(model, prepared)?;
     let islands = &prepared.done(model)?.islands;
+    islands.iter().for_each(|ready| ready.dual.begin());
     let (stops, threads) = (watch.stops.clone(), model.threads());
     let (is_heard, count) = (watch.log.is_heard(LogLevel::Phase), islands.len());
     let solve = |k: usize, say: &Say, voice: &mut dyn Voice| {

@@ -7,7 +7,7 @@ use crate::linalg::Operator;
 use crate::model::{Sizes, SolvedModel};
 use crate::progress::PhaseReport;
 use crate::qp;
-use crate::setup::{Prepared, Work};
+use crate::setup::{Duals, Prepared, Work};
 use crate::solve::slides::Slide;
 
 /// How a solve ended with an answer; with several groups of bodies, the outcome that comes last in this list.
@@ -116,15 +116,24 @@ impl Report {
             tries: qp::Tries::default(),
             finished: false,
             gap_scale: 0.0,
-            work: prepared.work,
+            work: Work::default(),
             energy: 0.0,
             seconds_setup: 0.0,
             seconds_solve: 0.0,
-            explicit_operators: sum(Dual::explicit_bodies),
-            implicit_operators: sum(Dual::implicit_bodies),
+            explicit_operators: 0,
+            implicit_operators: 0,
             factor_bytes: duals.operators.factor_bytes,
-            operator_bytes: sum(Dual::bytes_kept),
+            operator_bytes: 0,
             phases: Vec::new(),
         })
+    }
+
+    /// Takes the work so far, and the dual operators, which solves may assemble.
+    pub fn take_operators(&mut self, prepared: &Prepared, duals: &Duals) {
+        let sum = |of: fn(&Dual) -> usize| duals.islands.iter().map(|ready| of(&ready.dual)).sum();
+        self.work = prepared.work();
+        self.explicit_operators = sum(Dual::explicit_bodies);
+        self.implicit_operators = sum(Dual::implicit_bodies);
+        self.operator_bytes = sum(Dual::bytes_kept);
     }
 }

@@ -133,6 +133,7 @@ impl Problem {
             answer.report.seconds_setup = (solving - started).as_secs_f64();
             answer.report.seconds_solve = solving.elapsed().as_secs_f64();
             answer.report.phases = prepared.phases(model, &watch.phases);
+            answer.report.take_operators(prepared, prepared.done(model)?);
             answer.without = bodies_without(&answer, host, model, prepared.done(model)?);
             history.keep(answer, prepared.made);
         }
@@ -251,7 +252,7 @@ impl Problem {
 
     /// Work of all setups so far; on rank 0 of those of all ranks.
     pub fn work(&self) -> Work {
-        self.of_all().prepared.work
+        self.of_all().prepared.work()
     }
 
     /// Reserves memory for setup, solve and check while the result is kept; data out of date are dropped first.

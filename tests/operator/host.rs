@@ -28,6 +28,8 @@ pub struct Host {
 #[derive(Default)]
 pub struct Book {
     pub columns_of_kplus: AtomicUsize,
+    /// Of them, columns in calls of one column.
+    pub columns_alone: AtomicUsize,
     pub columns_of_k: AtomicUsize,
     /// Calls of both.
     pub calls: AtomicUsize,
@@ -153,6 +155,9 @@ impl Host {
             Box::new(move |x, nrhs, y| {
                 let counter = if of_kplus { &book.columns_of_kplus } else { &book.columns_of_k };
                 counter.fetch_add(nrhs, Ordering::Relaxed);
+                if of_kplus && nrhs == 1 {
+                    book.columns_alone.fetch_add(1, Ordering::Relaxed);
+                }
                 for (x, y) in x.chunks(n).zip(y.chunks_mut(n)) {
                     for (column, x) in matrix.chunks(n).zip(x).filter(|(_, x)| **x != 0.0) {
                         y.iter_mut().zip(column).for_each(|(y, a)| *y += a * x);
