@@ -13,6 +13,8 @@
 # make bench     time and memory against CHOLMOD, faer, Clarabel and OSQP (some 20 minutes, 11 GB); DECKS="4k 40k" picks some
 # make scaling   time and memory as unknowns, contact rows, bodies, pieces, threads grow: pictures in docs (some minutes);
 #                SWEEPS="rows cut" picks some, a number among them leaves out decks of more unknowns
+# make spooles   dual_operator=automatic with SPOOLES as K+ against the better of explicit and implicit (some minutes);
+#                SCENES="first newton" picks some
 # make growth    how time grows with the number of loose or glued bodies (some minutes); DECKS="tower wall" picks some
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
 # make mpi       several ranks under Open MPI and MPICH, DEALS=24 seeds of problems are dealt out; make mpi-short: under Open MPI
@@ -37,8 +39,8 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO_BUILD_TARGET)/)release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery rungs bits ranks test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
-.PHONY: quick driver man deb mpi mpi-short hosts-python
+.PHONY: all lib data setup demo battery rungs bits ranks test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling spooles paper docs
+.PHONY: quick driver man deb mpi mpi-short hosts hosts-python
 .PHONY: abi licences numbers vary packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -313,6 +315,14 @@ bench:
 
 scaling: setup
 	@$(CARGO) bench --bench bench --locked --quiet -- scaling $(SWEEPS)
+
+build/spooles: benches/spooles/main.c benches/spooles/factor.c benches/spooles/factor.h stage
+	@$(CC) -std=c99 -D_POSIX_C_SOURCE=199309L $(CFLAGS) -isystem /usr/include/spooles -I$(STAGE)/include $(filter %.c,$^) -o $@ $(LINK) -lspooles -lm
+
+spooles:
+	@tools/setup.sh libspooles-dev
+	@$(MAKE) --no-print-directory build/spooles
+	@build/spooles $(SCENES)
 
 paper:
 	@$(CARGO) bench --bench paper --locked --quiet -- $(CURDIR)/docs
