@@ -19,13 +19,14 @@
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
 # make mpi       several ranks under Open MPI and MPICH, DEALS=24 seeds of problems are dealt out; make mpi-short: under Open MPI
 #                alone, without them (a minute)
+# make hosts     CalculiX with this library's contact against its own on its own decks (a quarter of an hour), written to docs/hosts/calculix.md
 # make hosts-python  scikit-fem, SfePy and GetFEM as hosts, each against a known answer (seconds; the first time 1.2 GB in build/hosts)
 # make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html, which Chromium
 #                opens page by page without network (some minutes)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
 # make man       the manual pages alone                                make deb        Debian packages in build/deb (some minutes)
 # make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
-# bench, scaling, demo, docs, hosts-python, mpi and test install the Debian packages they miss (tools/setup.sh).
+# bench, scaling, demo, docs, hosts, hosts-python, mpi and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CARGO   ?= cargo
@@ -215,6 +216,11 @@ $(HOSTS)/installed: adapters/python/requirements.txt
 	python3 -m venv --clear $(@D)
 	$(@D)/bin/pip install --quiet --requirement $<
 	touch $@
+
+# CalculiX as a host, from Debian's sources.
+hosts: stage
+	@tools/setup.sh libarpack2-dev libspooles-dev liblapack-dev dpkg-dev
+	python3 adapters/calculix/run.py build/hosts/calculix $(STAGE) docs/hosts/calculix.md
 
 hosts-python: export FETI_CONTACT_LIBRARY = $(STAGE)/lib/libfeti_contact.so
 hosts-python: export PYTHONDONTWRITEBYTECODE = 1
