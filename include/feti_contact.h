@@ -954,9 +954,12 @@ int32_t feti_surface_add_i64(feti_problem *p, int64_t body, int32_t dim, int64_t
  * Make one call for each shape: faces are numbered through all calls, from 0. A quadrilateral whose last
  * corner is repeated is a triangle (of FETI_QUAD8 the node on the lost edge is that corner, too). Refused,
  * with the number of the face: a node that does not exist or is twice in the face, a face without area (at
- * most 1e-12 of the square of its longest edge), an edge that three faces share, two neighbours that
- * disagree about which side is outside. Give both sides of a shell as two surfaces. FETI_STATE if a pair
- * has the surface: faces come before pairs.
+ * most 1e-12 of the square of its longest edge), a quadrilateral whose corners cross, a mid node further
+ * than .4 of the length of its edge from the middle of the edge's chord (a quarter-point node has .25), a
+ * centre further than .4 of the longest edge from the middle of the face, an edge that three faces share,
+ * two neighbours that disagree about which side is outside. These are checked at the positions that the
+ * surface has now, not again after feti_surface_move. Give both sides of a shell as two surfaces.
+ * FETI_STATE if a pair has the surface: faces come before pairs.
  *
  * @param surface number of the surface, from 0
  * @param shape   FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8 or FETI_QUAD9, with

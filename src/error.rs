@@ -85,6 +85,11 @@ pub struct Place {
 /// Placeholder in a text for the index that was found.
 pub const INDEX: &str = "{index}";
 
+/// Placeholder in a text for a further index, from 0.
+pub fn number(index: i64) -> String {
+    format!("{{index {index}}}")
+}
+
 impl Place {
     /// The index found, in the host's counting.
     pub fn given_index(&self) -> Option<i64> {
@@ -179,12 +184,24 @@ impl Error {
         self
     }
 
-    /// The text with the index in the host's counting.
+    /// The text with the indices in the host's counting.
     fn told(&self) -> String {
-        match self.place.given_index() {
+        let text = match self.place.given_index() {
             Some(index) => self.what.replace(INDEX, &index.to_string()),
             None => self.what.clone(),
+        };
+        let base = self.place.index_base.unwrap_or(self.place.base);
+        let mut parts = text.split("{index ");
+        let mut told = parts.next().unwrap_or_default().to_owned();
+        for part in parts {
+            let (index, rest) = part.split_once('}').unwrap_or((part, ""));
+            match index.parse::<i64>() {
+                Ok(index) => told.push_str(&index.saturating_add(base).to_string()),
+                Err(_) => told.push_str(index),
+            }
+            told.push_str(rest);
         }
+        told
     }
 
     pub fn proved_by(mut self, proof: Proof) -> Self {
@@ -222,5 +239,8 @@ mod tests {
             (fortran.to_string().as_str(), fortran.place.given_index()),
             ("row 2: column 9 is outside", Some(9))
         );
+        let further = format!("{INDEX} is not between {} and {}", number(3), number(4));
+        let further = Error::argument("node", further).face(0).index(8).index_from(1);
+        assert_eq!(further.to_string(), "face 0: 9 is not between 4 and 5");
     }
 }

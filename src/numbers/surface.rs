@@ -3,6 +3,11 @@
 /// Area of a face relative to the square of its longest edge, or chord of a line relative to its longest distance of nodes, up to which it
 /// has no normal.
 pub const NO_AREA: f64 = 1e-12;
+/// Distance of a mid node from the middle of the chord of its edge, in parts of the chord, or of a centre from the middle of its face, in
+/// parts of the longest chord, up to which the nodes are in order. A quarter-point node has 0.25, an arc of 154 degrees 0.4, and 0.37 the
+/// worst node of a mesh whose nodes are moved at random by up to 0.15 of an edge along each axis. If the mid nodes of a triangle or of a
+/// convex quadrilateral are one place on, some edge has 0.5 at least.
+pub const MIDDLE: f64 = 0.4;
 /// Part of an edge by which a face is continued where the surface ends. Without it rows of nodes just beside a rim come and go.
 pub const RIM: f64 = 0.05;
 /// Part of an edge by which a node may leave the face that it keeps. Without it Newton's method of two blocks runs in a circle at 3e-3 of

@@ -3,6 +3,7 @@
 use crate::error::{Error, Kind, Result, INDEX};
 use crate::numbers::surface::NO_AREA;
 use crate::platform::memory::{filled, reserved};
+use crate::surface::order;
 use crate::surface::patch::Patch;
 use crate::surface::shape::{self, Shape};
 use crate::surface::vector::{angle, cross, length, minus, plus, unit, Vector, ZERO};
@@ -154,6 +155,7 @@ impl Faces {
             let what = format!("the face has no area: {area:.1e} of {whole:.1e}");
             return Err(Error::argument("node", what).value(area).limit(NO_AREA * whole));
         }
+        order::check(&patch, nodes)?;
         for (k, &node) in nodes.iter().enumerate() {
             let first = &mut self.first[node as usize];
             if *first == NONE {

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `vector` | points and vectors |
 //! | `shape`, `patch`, `domain` | shape functions; one face with its positions; where a foot may lie |
-//! | `faces`, `areas` | the faces of a surface, checked, normals and areas of nodes |
+//! | `faces`, `order`, `areas` | the faces of a surface, checked, whether their nodes are in order, normals and areas of nodes |
 //! | `rigid` | plane, sphere, cylinder |
 //! | `tree` | faces in boxes, nearest first |
 //! | `foot`, `find` | the foot of a node on a face, and the partner of every node |
@@ -20,6 +20,7 @@ mod foot;
 mod frame;
 mod meeting;
 mod mortar;
+mod order;
 mod patch;
 mod rigid;
 mod rows;

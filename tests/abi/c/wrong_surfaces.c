@@ -97,10 +97,11 @@ static void surfaces(feti_problem *p)
 static void faces(feti_problem *p)
 {
     static const int32_t bottom[4] = { 0, 3, 2, 1 }, twice[8] = { 4, 5, 6, 7, 0, 1, 1, 4 }, flat[3] = { 0, 8, 1 }, against[4] = { 1, 2, 6, 5 };
-    static const int32_t wrong_way[4] = { 0, 4, 5, 1 }, third[3] = { 0, 1, 6 }, front[4] = { 0, 1, 5, 4 }, below[3] = { 0, -1, 1 };
+    static const int32_t wrong_way[4] = { 0, 4, 5, 1 }, third[3] = { 0, 1, 6 }, crossed[4] = { 0, 3, 1, 2 }, front[4] = { 0, 1, 5, 4 }, below[3] = { 0, -1, 1 };
 
     REFUSED_AT(5, 1, NONE, feti_surface_faces_i32(p, CUBE, FETI_QUAD4, 2, twice, 0));
     REFUSED_AT(5, 0, NONE, feti_surface_faces_i32(p, CUBE, FETI_TRI3, 1, flat, 0));
+    REFUSED_AT(5, 0, NONE, feti_surface_faces_i32(p, CUBE, FETI_QUAD4, 1, crossed, 0));
     REFUSED_AT(5, 0, NONE, feti_surface_faces_i32(p, CUBE, FETI_TRI3, 1, below, 0));
     REFUSED_AT(5, 0, NONE, feti_surface_faces_i32(p, CUBE, FETI_TRI3, 1, third, 1));
     OK(feti_surface_faces_i32(p, CUBE, FETI_QUAD4, 1, bottom, 0));
