@@ -1507,11 +1507,11 @@ int32_t feti_setup(feti_problem *p);
  * and includes a setup that is due; FETI_CANCELLED if the host has cancelled; FETI_STALLED if steps no
  * longer reduce the error; FETI_INACCURATE if the certificate does not pass; FETI_MARGINAL if a part of
  * the load, below 1e-7 of it, is not held, or a body moves far beyond its deformation (the log names it).
- * With a status below 0 the group of bodies concerned has no answer. FETI_LOAD_NOT_HELD if no contact
- * force balances the load; FETI_SLIDES if friction holds only a part of the load and no equilibrium was
- * found; FETI_GAPS_CONTRADICT if rows contradict each other; FETI_INDEFINITE if K has negative stiffness
- * along a motion that closed rows do not stop. feti_diagnosis has the proof of each. The call runs
- * feti_setup when it is due, and then fails for the same reasons.
+ * With a status below 0 the group of bodies concerned has no answer. FETI_LOAD_NOT_HELD if no forces of
+ * the rows, friction included, balance the load; FETI_SLIDES if such forces exist, but bodies slide, and
+ * no equilibrium was found; FETI_GAPS_CONTRADICT if rows contradict each other; FETI_INDEFINITE if K has
+ * negative stiffness along a motion that closed rows do not stop. feti_diagnosis has the proof of each.
+ * The call runs feti_setup when it is due, and then fails for the same reasons.
  *
  * @param[in,out] info `struct_size` set, at least 16; may be NULL
  */
@@ -1902,7 +1902,10 @@ typedef struct feti_findings {
   int64_t soft_bodies;
   /** The first of these bodies; -1: none. */
   int64_t soft_body;
-  /** After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN. */
+  /**
+   * After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN. After
+   * FETI_LOAD_NOT_HELD the text of the error has it for nodes with friction.
+   */
   double capacity;
   /** Rank that has given `body` or `row`, if several ranks have given some; -1: does not apply. */
   int64_t rank;
@@ -2725,7 +2728,10 @@ int32_t feti_problem_error(feti_problem *p, char *buf, int64_t cap, int64_t *len
 #define FETI_CALLBACK -4
 /** Something that this call needs has not been given yet. */
 #define FETI_STATE -5
-/** No contact force can balance the load. */
+/**
+ * No forces of the rows, friction within its law included, balance the load: a body without contact, or a
+ * block on a plane that is pushed by more than mu N.
+ */
 #define FETI_LOAD_NOT_HELD -6
 /** Rows contradict each other. */
 #define FETI_GAPS_CONTRADICT -7
@@ -2747,7 +2753,10 @@ int32_t feti_problem_error(feti_problem *p, char *buf, int64_t cap, int64_t *len
 #define FETI_UNSUPPORTED -12
 /** A given number, or a product of given numbers, does not fit its type. */
 #define FETI_OVERFLOW -13
-/** Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found. */
+/**
+ * Forces within the law of friction would balance the load, since a spring, a support or a second wall
+ * across the contact could press harder than it does: bodies slide steadily, and no equilibrium was found.
+ */
 #define FETI_SLIDES -14
 /** Another rank cannot be reached, or runs another build of the library. */
 #define FETI_COMMUNICATION -15

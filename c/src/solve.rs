@@ -55,7 +55,7 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// due; FETI_CANCELLED if the host has cancelled; FETI_STALLED if steps no longer reduce the error; FETI_INACCURATE if
 /// the certificate does not pass; FETI_MARGINAL if a part of the load, below 1e-7 of it, is not held, or a body moves far
 /// beyond its deformation (the log names it). With a status below 0 the group of bodies concerned has no answer.
-/// FETI_LOAD_NOT_HELD if no contact force balances the load; FETI_SLIDES if friction holds only a part of the load and no
+/// FETI_LOAD_NOT_HELD if no forces of the rows, friction included, balance the load; FETI_SLIDES if such forces exist, but bodies slide, and no
 /// equilibrium was found; FETI_GAPS_CONTRADICT if rows contradict each other; FETI_INDEFINITE if K has negative stiffness along a motion that closed rows do not stop. feti_diagnosis has the proof of
 /// each. The call runs feti_setup when it is due, and then fails for the same reasons.
 ///

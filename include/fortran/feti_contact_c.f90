@@ -1253,7 +1253,8 @@ module feti_contact_c
     integer(c_int64_t) :: soft_bodies
     !> The first of these bodies; -1: none.
     integer(c_int64_t) :: soft_body
-    !> After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN.
+    !> After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN. After
+    !> FETI_LOAD_NOT_HELD the text of the error has it for nodes with friction.
     real(c_double) :: capacity
     !> Rank that has given `body` or `row`, if several ranks have given some; -1: does not apply.
     integer(c_int64_t) :: rank
@@ -1855,7 +1856,8 @@ module feti_contact_c
   integer(c_int32_t), parameter :: FETI_CALLBACK = -4_c_int32_t
   !> Something that this call needs has not been given yet.
   integer(c_int32_t), parameter :: FETI_STATE = -5_c_int32_t
-  !> No contact force can balance the load.
+  !> No forces of the rows, friction within its law included, balance the load: a body without contact, or a block on a
+  !> plane that is pushed by more than mu N.
   integer(c_int32_t), parameter :: FETI_LOAD_NOT_HELD = -6_c_int32_t
   !> Rows contradict each other.
   integer(c_int32_t), parameter :: FETI_GAPS_CONTRADICT = -7_c_int32_t
@@ -1872,7 +1874,8 @@ module feti_contact_c
   integer(c_int32_t), parameter :: FETI_UNSUPPORTED = -12_c_int32_t
   !> A given number, or a product of given numbers, does not fit its type.
   integer(c_int32_t), parameter :: FETI_OVERFLOW = -13_c_int32_t
-  !> Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found.
+  !> Forces within the law of friction would balance the load, since a spring, a support or a second wall across the
+  !> contact could press harder than it does: bodies slide steadily, and no equilibrium was found.
   integer(c_int32_t), parameter :: FETI_SLIDES = -14_c_int32_t
   !> Another rank cannot be reached, or runs another build of the library.
   integer(c_int32_t), parameter :: FETI_COMMUNICATION = -15_c_int32_t

@@ -114,7 +114,7 @@ fn solve_held(
             }
             Tried::NotHeld { far } => {
                 let least = interrupt::part(DIAGNOSIS, || Unheld::least(case, &dual, &far))?;
-                if let Some(error) = least.proof(case, &dual)? {
+                if let Some(error) = least.proof(case, &dual, &far)? {
                     return Err(error);
                 }
                 let share = least.share;

@@ -64,8 +64,28 @@ fn a_load_that_nothing_holds_is_told_with_what_the_rows_do() {
     refused(
         &mut rubbing,
         Kind::LoadNotHeld,
-        "the friction of 1 nodes gives way: it can hold 50.000 % of the load",
+        "the friction of 1 nodes gives way: it can hold 50.000 % of the load along the slide",
     );
+}
+
+/// The proof's motion lifts the body, without pressure Coulomb's friction would hold nothing: the share is that of the slide.
+#[test]
+fn the_share_that_coulombs_friction_holds_is_told_for_the_slide_and_the_pressure_that_there_is() {
+    for force in [1.0, 1e-6, 3e7] {
+        let mut pushed = bar();
+        row(&mut pushed, RowKind::Inequality, 1, 1.0, 0.5);
+        node(&mut pushed, 2, 0.3, 0.0);
+        pushed.set_load(0, &[force, 0.0, force]).unwrap();
+        // the bound .3 N times the length of the tangential row
+        let says = "the friction of 1 nodes gives way: it can hold 60.000 % of the load along the slide";
+        refused(&mut pushed, Kind::LoadNotHeld, says);
+        pushed.set_load(0, &[-force, 0.0, force]).unwrap();
+        refused(
+            &mut pushed,
+            Kind::LoadNotHeld,
+            "nothing presses the 1 nodes with friction that would resist",
+        );
+    }
 }
 
 #[test]

@@ -51,7 +51,8 @@ pub struct feti_findings {
     pub soft_bodies: i64,
     /// The first of these bodies; -1: none.
     pub soft_body: i64,
-    /// After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN.
+    /// After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN. After
+    /// FETI_LOAD_NOT_HELD the text of the error has it for nodes with friction.
     pub capacity: f64,
     /// Rank that has given `body` or `row`, if several ranks have given some; -1: does not apply.
     pub rank: i64,

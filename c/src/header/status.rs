@@ -29,7 +29,8 @@ pub const FETI_BUSY: i32 = -3;
 pub const FETI_CALLBACK: i32 = -4;
 /// Something that this call needs has not been given yet.
 pub const FETI_STATE: i32 = -5;
-/// No contact force can balance the load.
+/// No forces of the rows, friction within its law included, balance the load: a body without contact, or a block on a plane
+/// that is pushed by more than mu N.
 pub const FETI_LOAD_NOT_HELD: i32 = -6;
 /// Rows contradict each other.
 pub const FETI_GAPS_CONTRADICT: i32 = -7;
@@ -46,7 +47,8 @@ pub const FETI_INTERNAL: i32 = -11;
 pub const FETI_UNSUPPORTED: i32 = -12;
 /// A given number, or a product of given numbers, does not fit its type.
 pub const FETI_OVERFLOW: i32 = -13;
-/// Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found.
+/// Forces within the law of friction would balance the load, since a spring, a support or a second wall across the contact
+/// could press harder than it does: bodies slide steadily, and no equilibrium was found.
 pub const FETI_SLIDES: i32 = -14;
 /// Another rank cannot be reached, or runs another build of the library.
 pub const FETI_COMMUNICATION: i32 = -15;

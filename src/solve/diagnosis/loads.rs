@@ -140,8 +140,8 @@ impl Unheld {
     /// The error with a motion v = R c which proves that nothing holds the load: by the data of the host K does not
     /// strain by v, and f'v is more than the work of forces `BEYOND` times the load against the rows that resist. v moves
     /// the cluster with the largest share, or all bodies with more than a small share, or all: loads of other bodies do
-    /// not count.
-    pub fn proof(&self, case: Case, scaled: &Scaled) -> Result<Option<Error>> {
+    /// not count. Rows marked in `far` have no forces.
+    pub fn proof(&self, case: Case, scaled: &Scaled, far: &[bool]) -> Result<Option<Error>> {
         if self.is_little() {
             return Ok(None);
         }
@@ -167,15 +167,15 @@ impl Unheld {
                 let mut v = zeros(case.model.sizes().dofs, "a motion")?;
                 island.scatter(case.model, bodies.bring(&own)?, &mut v);
                 let moved: Vec<bool> = answers.iter().map(|body| body.moved).collect();
-                let why = self.why(case, (&moved, &at), work.value());
+                let why = self.why(case, (scaled, far), (&moved, &at));
                 return Ok(Some(self.named(case, v, answers[self.body].is_stiff, &why)));
             }
         }
         Ok(None)
     }
 
-    /// What the rows on the bodies that have `moved` by v do about it, v `at` the rows; `work`: f'v in units of 2^p.
-    fn why(&self, case: Case, (moved, at): (&[bool], &[f64]), work: f64) -> String {
+    /// What the rows on the bodies that have `moved` by v do about it, v `at` the rows.
+    fn why(&self, case: Case, (scaled, far): (&Scaled, &[bool]), (moved, at): (&[bool], &[f64])) -> String {
         let (ready, island) = (case.ready, case.island());
         let touching: Vec<usize> = (0..ready.rows.tangential)
             .filter(|&i| {
@@ -188,10 +188,16 @@ impl Unheld {
         let opened =
             touching.iter().filter(|&&i| i < ready.rows.contact && along(ready, i, at) < 0.0).count();
         if rubbing > 0 {
-            let held = 100.0 * bounded(ready, at) / work;
-            return format!(
-                "; the friction of {rubbing} nodes gives way: it can hold {held:.3} % of the load along the motion"
-            );
+            // what interrupts this must not take the proof with it
+            let held = 100.0 * self.held_by_friction(case, scaled, far).unwrap_or(f64::NAN);
+            let told = format!("{held:.3}");
+            return match told.as_str() {
+                "0.000" => format!("; nothing presses the {rubbing} nodes with friction that would resist"),
+                _ if held < 100.0 => format!(
+                    "; the friction of {rubbing} nodes gives way: it can hold {told} % of the load along the slide"
+                ),
+                _ => format!("; the friction of {rubbing} nodes gives way"),
+            };
         }
         match touching.len() {
             0 => "; no row with a finite gap touches what moves".to_owned(),
@@ -201,6 +207,31 @@ impl Unheld {
             ),
             _ => String::new(),
         }
+    }
+
+    /// The part of the load along the slide that friction can hold, NaN if nothing slides: v of the proof also lifts, which would leave
+    /// Coulomb's friction without pressure. The slide is the motion that the load drives without friction, and the pressure that of the
+    /// forces which then hold the rest of the load.
+    fn held_by_friction(&self, case: Case, scaled: &Scaled, far: &[bool]) -> Result<f64> {
+        let (ready, bodies) = (case.ready, case.locals()?);
+        let is_far = |group: usize| far.get(group).copied().unwrap_or(false);
+        let leaders = ready.rows.scaling.grouping.leaders.iter().enumerate();
+        let smooth: Vec<bool> =
+            leaders.map(|(group, &row)| row >= ready.rows.tangential || is_far(group)).collect();
+        let slide = Self::least(case, scaled, &smooth)?;
+        let moves = |p: usize| slide.cluster[p] == slide.cluster[self.body] && slide.shares[p] > 0.0;
+        let (answers, _) =
+            bodies.make(|p: usize| Proof { moves: moves(p) }, (&scaled.load.of, &slide.left))?;
+        let at: Vec<f64> = answers.iter().flat_map(|body| &body.at_rows).copied().collect();
+        let mut work = Twofold::default();
+        answers.iter().for_each(|body| work.add_twofold(body.work));
+        let held = |node: &FrictionNode| {
+            let pressed =
+                node.normal.map_or(0.0, |row| node.coefficient * pressure(ready, scaled, (&slide.x, row)));
+            (node.bound + pressed) * slip(ready, node, &at)
+        };
+        let held: f64 = ready.island.friction.nodes.iter().map(held).sum();
+        Ok(held / ready.island.unit / work.value())
     }
 
     /// `stiff`: K resists the unknown of the body that moves fastest.
@@ -253,6 +284,13 @@ fn bounded(ready: &Ready, v: &[f64]) -> f64 {
     let nodes = ready.island.friction.nodes.iter();
     let work = nodes.map(|node| if node.bound > 0.0 { node.bound * slip(ready, node, v) } else { 0.0 });
     work.sum::<f64>() / ready.island.unit
+}
+
+/// Force of a contact row, its share of that of its group in x; 0 if it carries none.
+fn pressure(ready: &Ready, scaled: &Scaled, (x, row): (&[f64], usize)) -> f64 {
+    let (scaling, gaps) = (&ready.rows.scaling, &scaled.gaps);
+    let group = scaling.grouping.member[row].map(|(group, _)| group).filter(|&group| gaps.bounded[group]);
+    group.map_or(0.0, |group| x[group] * scaling.force_of(group, row) * gaps.share[row])
 }
 
 /// `|T v|` of a node.
