@@ -2,7 +2,7 @@
 
 use crate::certificate::{Certificate, FrictionState};
 use crate::constraints::RowKind;
-use crate::error::{Error, Result};
+use crate::error::{number, Error, Kind, Result};
 use crate::model::{Met, Pair};
 use crate::platform::memory::zeros;
 use crate::solve::{Answer, RowState};
@@ -149,7 +149,7 @@ impl Problem {
         })
     }
 
-    /// The error with pair and slave node of the row that it names.
+    /// The error with pair and slave node of the row that it names; if a load is not held, also with a pair that has met nothing.
     pub(in crate::solver) fn with_pair(&self, mut error: Error) -> Error {
         let kind = error.place.kind.and_then(|kind| RowKind::ALL.get(kind).copied());
         if let (Some(row), Some(kind)) = (error.place.row, kind) {
@@ -159,7 +159,25 @@ impl Problem {
                 (error.place.pair, error.place.node) = (Some(pair), Some(node));
             }
         }
+        if error.kind == Kind::LoadNotHeld {
+            error.what.push_str(&self.pair_without_partners());
+        }
         error
+    }
+
+    /// Names the first pair of which no node has a partner, if there is one that is on.
+    fn pair_without_partners(&self) -> String {
+        let is_alone = |pair: &Pair| pair.laws.scalars.is_on && pair.met.iter().all(Option::is_none);
+        let pairs = &self.model.pairs.pairs;
+        let Some(first) = pairs.iter().position(is_alone) else { return String::new() };
+        let (pair, name) = (&pairs[first], number(first as i64));
+        if pair.adjusted.is_none() && pair.tied.is_none() {
+            return format!("; pair {name}: no find has made its rows yet");
+        }
+        format!(
+            "; pair {name}: none of its {} nodes has a partner: do the faces run the wrong way round, or is distance too small?",
+            pair.nodes.len()
+        )
     }
 
     /// Pair and slave node of the row, or of the node with friction, that is worst in a certificate; none if it belongs to no pair.

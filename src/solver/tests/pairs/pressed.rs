@@ -1,6 +1,7 @@
 //! Blocks pressed on each other and on rigid planes.
 
 use super::*;
+use crate::error::Kind;
 use crate::solver::{Outcome, PairField, RigidShape, RowKind};
 
 /// In the plane and in space; the lower block is held at its foot and bulges, so that the pressure is constant on average.
@@ -40,6 +41,66 @@ fn the_pressure_between_two_blocks_has_the_load_as_its_resultant() {
         let normal = problem.pair_field(made, PairField::Normal).unwrap();
         let used = upper.side(false);
         assert!(used.iter().all(|node| (normal[dim * node + dim - 1] + 1.0).abs() < 1e-14));
+    }
+}
+
+/// A block of weight N on a plane, pushed at its foot by Q > mu N: no forces balance that, and friction holds mu N / Q of it.
+#[test]
+fn a_block_pushed_by_more_than_friction_holds_is_told_how_much_that_is() {
+    const MU: f64 = 0.3;
+    for (dim, method) in [2, 3].into_iter().flat_map(|dim| METHODS.map(|method| (dim, method))) {
+        for over in [1.01, 2.0] {
+            let upper = block(&vec![0.0; dim], &[2.0, 1.0, 0.5][3 - dim..], &[4, 3, 2][3 - dim..], |_| false);
+            let mut problem = Problem::new();
+            let body = upper.give(&mut problem);
+            let slave = upper.surface(&mut problem, body, false);
+            let mut data = vec![0.0; 2 * dim];
+            data[2 * dim - 1] = 1.0;
+            let master = problem.surface_rigid(dim, RigidShape::Plane, &data).unwrap();
+            let made = pair_by(&mut problem, method, slave, master, 0.1);
+            problem.pair_set(made, "friction", &[MU]).unwrap();
+            problem.pairs_find().unwrap();
+            let areas = problem.pair_field(made, PairField::Area).unwrap();
+            let mut load = vec![0.0; upper.dof.len()];
+            for node in upper.side(false) {
+                load[dim * node + dim - 1] = -areas[node];
+                load[dim * node] = over * MU * areas[node];
+            }
+            problem.set_load(body, &upper.gathered(&load)).unwrap();
+            let error = problem.solve().unwrap_err();
+            let (nodes, part) = (upper.side(false).len(), 100.0 / over);
+            let says = format!("the friction of {nodes} nodes gives way: it can hold {part:.3} % of the load along the slide");
+            assert!(error.kind == Kind::LoadNotHeld && error.what.contains(&says), "{says}: {error}");
+        }
+    }
+}
+
+/// Faces that run the wrong way round, a distance that is too small, and a find that is missing.
+#[test]
+fn a_load_that_is_not_held_names_the_pair_of_which_no_node_has_a_partner() {
+    let upper = block(&[0.0, 1e-3], &[2.0, 1.0], &[4, 2], |_| false);
+    let foot = upper.faces(false);
+    let reversed: Vec<i64> = foot.chunks(2).flat_map(|line| [line[1], line[0]]).collect();
+    for (faces, distance, is_held) in [(&foot, 0.1, true), (&reversed, 0.1, false), (&foot, 1e-4, false)] {
+        let mut problem = Problem::new();
+        let body = upper.give(&mut problem);
+        let slave = problem.surface_add(Some(body), 2, &upper.x, 2, Some((&upper.dof, 2))).unwrap();
+        problem.surface_faces(slave, Shape::Line2, faces).unwrap();
+        let tool = problem.surface_add(None, 2, &[3.0, 0.0, -1.0, 0.0], 2, None).unwrap();
+        problem.surface_faces(tool, Shape::Line2, &[0, 1]).unwrap();
+        pair(&mut problem, slave, tool, distance);
+        let load: Vec<f64> = (0..upper.x.len()).map(|i| [0.0, -1.0][i % 2]).collect();
+        problem.set_load(body, &upper.gathered(&load)).unwrap();
+        let said = problem.solve().unwrap_err().to_string();
+        assert!(said.contains("; pair 0: no find has made its rows yet"), "{said}");
+        problem.pairs_find().unwrap();
+        let solved = problem.solve();
+        assert_eq!(solved.is_ok(), is_held, "{solved:?}");
+        let says = "; pair 1: none of its 5 nodes has a partner: do the faces run the wrong way round, or is distance too small?";
+        solved.err().iter().for_each(|error| {
+            let said = error.clone().counted_from(1).to_string();
+            assert!(error.kind == Kind::LoadNotHeld && said.contains(says), "{said}");
+        });
     }
 }
 
