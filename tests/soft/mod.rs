@@ -3,6 +3,7 @@
 //!
 //! | module | claims |
 //! |---|---|
+//! | [`averaged`] | more averaged rows than gaps, almost dependent, at the end of a Newton method, from given answers |
 //! | [`column`] | diagonal entries of K that are negative, or 0 beside others: a rigid column with its load on top |
 //! | [`coordinates`] | rigid motions of coordinates, with and without supports, resisted or driven |
 //! | [`driven`] | negative stiffness of rho from .007 to .9, and of no minimum |
@@ -10,6 +11,7 @@
 //! | [`units`] | units of forces and lengths, problem files |
 //! | [`weak`] | springs and rounding of 1e-12 to 1e-4 of K: forces, products, units, threads |
 
+mod averaged;
 mod column;
 mod coordinates;
 mod driven;

@@ -29,7 +29,7 @@ struct Point {
 }
 
 /// Dense K and all rows.
-struct Dense {
+pub struct Dense {
     n: usize,
     k: Vec<f64>,
     contact: Vec<Vec<f64>>,
@@ -37,7 +37,7 @@ struct Dense {
 }
 
 impl Dense {
-    fn of(deck: &Deck) -> Self {
+    pub fn of(deck: &Deck) -> Self {
         let n = deck.dofs();
         let mut k = vec![0.0; n * n];
         for (p, body) in deck.bodies.iter().enumerate() {
@@ -77,7 +77,7 @@ impl Dense {
     }
 
     /// The least eigenvalue of K along the closed rows is positive: Cholesky with stiff springs on them.
-    fn is_definite(&self, closed: &[usize]) -> bool {
+    pub fn is_definite(&self, closed: &[usize]) -> bool {
         let n = self.n;
         let stiff = 1e4 * (0..n).map(|i| self.k[i * n + i]).fold(0.0, f64::max);
         let mut a = self.k.clone();
