@@ -33,7 +33,7 @@ const ROUNDS: usize = 60;
 const STRICT: usize = 2;
 /// This limit applies to all rounds if there are no Newton steps.
 const STRICT_ALONE: usize = 20;
-/// After this number of Newton rounds on one face, only rounding is left between the rounds.
+/// After this number of Newton rounds on one face, or of rounds that do not lower the energy, only rounding is left between the rounds.
 const MENDED: usize = 4;
 
 /// Where a round begins.
@@ -52,11 +52,16 @@ struct Round<'a> {
     /// `S-^1/2 a`, and its difference from b of the round.
     next: Vec<f64>,
     change: Vec<f64>,
-    /// What falls from round to round without friction: `1/2 u'K u - f'u` up to a constant, and the size of its terms.
-    energy: f64,
-    terms: f64,
+    energy: Energy,
     /// None if the face is too large for dense factors.
     feedback: Option<Feedback<'a>>,
+}
+
+/// What falls from round to round without friction: `1/2 u'K u - f'u` up to a constant, and the size of its terms.
+#[derive(Clone, Copy)]
+struct Energy {
+    value: f64,
+    terms: f64,
 }
 
 /// What the rounds so far have found.
@@ -65,6 +70,9 @@ pub struct Known<'a> {
     pub rounds: usize,
     /// Successive rounds on one face.
     same: usize,
+    /// The lowest energy, and the successive rounds that have left neither their face nor this energy.
+    lowest: Option<Energy>,
+    still: usize,
     /// The last round, not counting trials whose energy has risen.
     last: Option<Round<'a>>,
 }
@@ -94,7 +102,20 @@ impl Step {
     }
 }
 
-impl Known<'_> {
+impl<'a> Known<'a> {
+    /// Counts a round; the last one if it had the same face.
+    fn count(&mut self, round: &Round) -> Option<&Round<'a>> {
+        self.rounds += 1;
+        let is_same = self.last.as_ref().is_some_and(|last| last.held == round.held);
+        self.same = if is_same { self.same + 1 } else { 0 };
+        let falls = self.lowest.is_none_or(|lowest| lowest.is_above(round.energy));
+        if falls {
+            self.lowest = Some(round.energy);
+        }
+        self.still = if is_same || !falls { self.still + 1 } else { 0 };
+        self.last.as_ref().filter(|_| is_same)
+    }
+
     /// An accepted answer must also have settled amplitudes.
     pub fn is_strict(&self) -> bool {
         match &self.last {
@@ -110,10 +131,11 @@ impl Round<'_> {
     fn followed(&self) -> Step {
         Step { b: self.next.clone(), x: self.x.clone(), is_trial: false }
     }
+}
 
-    /// The energy of this round is above that of `other`.
-    fn is_above(&self, other: &Round) -> bool {
-        self.energy > other.energy + SAME_ENERGY * (self.terms + other.terms)
+impl Energy {
+    fn is_above(self, other: Self) -> bool {
+        self.value > other.value + SAME_ENERGY * (self.terms + other.terms)
     }
 }
 
@@ -127,10 +149,7 @@ impl<'a> Search<'a, '_> {
         unsettled: bool,
     ) -> Result<Next> {
         let round = self.round(step, found)?;
-        known.rounds += 1;
-        let is_same = known.last.as_ref().is_some_and(|last| last.held == round.held);
-        known.same = if is_same { known.same + 1 } else { 0 };
-        let falling = self.falling(&round, known.last.as_ref().filter(|_| is_same), unsettled)?;
+        let falling = self.falling(&round, known.count(&round), unsettled)?;
         match &falling {
             None if !unsettled => return Ok(Next::End(Verdict::Solved)),
             // with friction there is no way downhill
@@ -145,28 +164,30 @@ impl<'a> Search<'a, '_> {
         }
         // with friction there is no energy
         let judges = step.is_trial && !self.recovery.friction;
-        if let Some(last) = known.last.as_ref().filter(|last| judges && round.is_above(last)) {
-            return Ok(Next::Step(last.followed()));
-        }
-        let next = match &falling {
-            Some((motion, rate)) => self.along(&round, (motion, *rate), !unsettled)?,
-            None => self.settled(&round, known.same)?,
+        let before = known.last.as_ref().filter(|last| judges && round.energy.is_above(last.energy));
+        let next = match (before, &falling) {
+            (Some(last), _) => last.followed(),
+            (None, Some((motion, rate))) => self.along(&round, (motion, *rate), !unsettled)?,
+            (None, None) => self.settled(&round, known.same)?,
         };
-        let is_to_mend =
-            falling.is_none() && (self.recovery.friction || next.is_trial && known.same == MENDED);
-        known.last = Some(round);
+        let rests = round.feedback.as_ref().is_some_and(|feedback| feedback.rate() < 1.0)
+            && (known.same == MENDED || known.still == MENDED);
+        let is_to_mend = falling.is_none() && (self.recovery.friction || rests);
+        if before.is_none() {
+            known.last = Some(round);
+        }
         Ok(if is_to_mend { Next::Mend(next) } else { Next::Step(next) })
     }
 
-    /// Whether the energy falls along no motion that keeps the closed rows of a corrected answer closed. Without friction its rows are
-    /// those of the rounds before.
+    /// Whether the energy falls along no motion that keeps the closed rows of a corrected answer closed.
     pub fn is_minimum(&self, step: &Step, solution: &Solution) -> Result<bool> {
-        if !self.recovery.friction {
-            return Ok(true);
-        }
-        let held = self
-            .recovery
-            .held_with_friction(&self.displacements(&solution.x, &solution.alpha)?.u.at_rows, &solution.x)?;
+        let held = match self.recovery.friction {
+            true => {
+                let u = self.displacements(&solution.x, &solution.alpha)?.u;
+                self.recovery.held_with_friction(&u.at_rows, &solution.x)?
+            }
+            false => self.qp.at_bound(&solution.x),
+        };
         let round = self.round(step, (solution, held))?;
         Ok(self.falling(&round, None, false)?.is_none())
     }
@@ -204,10 +225,9 @@ impl<'a> Search<'a, '_> {
         let change = minus(&next, &step.b);
         let parts = [dot(self.qp.b, x), -dot(self.qp.e, alpha), dot(&next, &step.b), -dot(&next, &next)]
             .map(|part| 0.5 * part);
-        let energy = parts.iter().sum::<f64>();
-        let terms = parts.iter().map(|part| part.abs()).sum::<f64>();
+        let energy = Energy { value: parts.iter().sum(), terms: parts.iter().map(|part| part.abs()).sum() };
         let feedback = Feedback::of(self.means.direct, self.qp, &held, self.negative)?;
-        Ok(Round { x: x.clone(), alpha: alpha.clone(), held, next, change, energy, terms, feedback })
+        Ok(Round { x: x.clone(), alpha: alpha.clone(), held, next, change, energy, feedback })
     }
 
     /// A motion along which the energy falls while the rows of the face stay closed, and its rate; `last` had the same
