@@ -20,7 +20,7 @@ static struct {
     feti_problem *problem;
     int64_t body, pairs, pair[MOST], surfaces, points[2 * MOST];
     ITG *list[2 * MOST]; /* nodes of a cloud of points, NULL: all nodes of the mesh */
-    ITG nodes, mt, unknowns, mortar, status, without_stress, stresses, *dof, *node, *dir, *number, *ptr, *term;
+    ITG nodes, mt, unknowns, mortar, status, without_stress, *dof, *node, *dir, *number, *ptr, *term;
     double *x, *xyz, *constant, *coefficient, *force, *no_stress;
     char text[1000];
 } c;
@@ -42,12 +42,17 @@ ITG feti_type(ITG mortar)
     return 0;
 }
 
+static void stop(const char *text)
+{
+    printf(" *ERROR in contact by feti-contact: %s\n", text);
+    exit(201);
+}
+
 static void call(int32_t status)
 {
     if (status == FETI_OK) return;
     feti_last_error(c.text, sizeof c.text);
-    printf(" *ERROR by feti-contact: %s\n", c.text);
-    exit(201);
+    stop(c.text);
 }
 
 /* Positions and unknowns of the points of a surface. */
@@ -94,11 +99,12 @@ static int64_t add_surface(ITG *list, ITG points, ITG *code, ITG stride, ITG cou
 
 /* At the begin of a step: a pair for each *CONTACT PAIR. Its slave is a cloud of points if there is a set of nodes with its name. Material of a pair:
    law[2] slope, law[3] kind (2 LINEAR, 4 TIED), law[6] coefficient of friction. ADJUST by a set of nodes counts for all nodes. */
-void feti_begin(ITG ntie, char *tieset, char *set, ITG nset, double *tietol, ITG *itietri, ITG *koncont, ITG *itiefac, ITG *islavsurf, ITG *nslavnode,
+void feti_begin(ITG fits, ITG ntie, char *tieset, char *set, ITG nset, double *tietol, ITG *itietri, ITG *koncont, ITG *itiefac, ITG *islavsurf, ITG *nslavnode,
                 ITG *islavnode, ITG *ipkon, ITG *kon, char *lakon, ITG nk, ITG mt, ITG neq, double *elcon, ITG values, ITG *nactdof, ITG terms, double *co,
                 double *vold)
 {
     double size = 0.0;
+    if (!fits) stop("the step has to be static and mechanical, with SOLVER=SPOOLES");
     c.nodes = nk, c.mt = mt, c.unknowns = neq, c.pairs = c.surfaces = 0;
     GROW(x, 3 * nk), GROW(dof, 3 * nk), GROW(xyz, 3 * neq), GROW(node, neq), GROW(dir, neq), GROW(force, neq), GROW(term, terms), GROW(coefficient, terms);
     GROW(number, mt * nk), GROW(constant, mt * nk), GROW(ptr, mt * nk);
@@ -115,7 +121,8 @@ void feti_begin(ITG ntie, char *tieset, char *set, ITG nset, double *tietol, ITG
         const ITG kind = (ITG)law[3], points = nslavnode[i + 1] - nslavnode[i], method = c.mortar ? FETI_MORTAR : FETI_NODE_TO_FACE;
         ITG faces = 1, *first = islavsurf + 2 * (itiefac[2 * i] - 1), *triangle = koncont + 4 * itietri[2 * i] - 1;
         int64_t slave, master, *pair = c.pair + c.pairs;
-        if (tie[80] != 'C' || c.pairs++ == MOST) continue;
+        if (tie[80] != 'C') continue;
+        if (c.pairs == MOST) stop("too many contact pairs");
         for (ITG k = 0; k < nset; k++) faces = faces && (strchr(tie + 81, ' ')[-1] == 'T' || memcmp(set + 81 * k, tie + 81, 81));
         slave = add_surface(faces ? NULL : islavnode + nslavnode[i], faces ? nk : points, first, 2, itiefac[2 * i + 1] - itiefac[2 * i] + 1, ipkon, kon,
                             lakon, co, vold);
@@ -124,6 +131,7 @@ void feti_begin(ITG ntie, char *tieset, char *set, ITG nset, double *tietol, ITG
         if (adjust > 0.0) call(feti_pair_set_f64(c.problem, *pair, "adjust", 1, &adjust));
         if (values > 7 && kind != 4) call(feti_pair_set_f64(c.problem, *pair, "friction", 1, law + 6));
         if (faces && kind == 2 && !strcmp(feti_wish(), "compliance")) call(feti_pair_set_f64(c.problem, *pair, "compliance", 1, &yield));
+        c.pairs++;
     }
 }
 
@@ -137,8 +145,9 @@ void feti_commit(double *co, double *vold)
 /* The stresses for the next K. */
 double *feti_stress(double *sti, ITG n)
 {
-    if (c.stresses < n) free(c.no_stress), c.no_stress = calloc(c.stresses = n, sizeof *sti);
-    return c.without_stress ? c.no_stress : sti;
+    if (!c.without_stress) return sti;
+    GROW(no_stress, n);
+    return memset(c.no_stress, 0, n * sizeof *sti);
 }
 
 /* Supports and equations, as what is left to go: an eliminated unknown is constant + sum coefficient x term. */

@@ -1,7 +1,7 @@
 /* Called by nonlingeo.c of CalculiX where insert.py puts the calls; described in glue.c. */
 char *feti_wish(void);
 ITG feti_type(ITG mortar);
-void feti_begin(ITG ntie, char *tieset, char *set, ITG nset, double *tietol, ITG *itietri, ITG *koncont, ITG *itiefac, ITG *islavsurf, ITG *nslavnode,
+void feti_begin(ITG fits, ITG ntie, char *tieset, char *set, ITG nset, double *tietol, ITG *itietri, ITG *koncont, ITG *itiefac, ITG *islavsurf, ITG *nslavnode,
                 ITG *islavnode, ITG *ipkon, ITG *kon, char *lakon, ITG nk, ITG mt, ITG neq, double *elcon, ITG values, ITG *nactdof, ITG terms, double *co,
                 double *vold);
 void feti_commit(double *co, double *vold);

@@ -14,8 +14,8 @@ PLACES = [
     ("if(*mortar!=1){", 0, "if(feti_wish()) *mortar=feti_type(*mortar);"),
     ("NNEW(xmastnor,double,3*nmastnode[*ntie]);", 0,
      "if(feti_wish())\n"
-     "  feti_begin(*ntie,tieset,set,*nset,tietol,itietri,koncont,itiefac,islavsurf,nslavnode,islavnode,ipkon,kon,\n"
-     "    lakon,*nk,mt,neq[0],elcon,(*ncmat_+1)**ntmat_,nactdof,memmpc_,co,vold);"),
+     "  feti_begin((*nmethod==1)&&(*ithermal<2)&&(*isolver==0),*ntie,tieset,set,*nset,tietol,itietri,koncont,itiefac,islavsurf,\n"
+     "    nslavnode,islavnode,ipkon,kon,lakon,*nk,mt,neq[0],elcon,(*ncmat_+1)**ntmat_,nactdof,memmpc_,co,vold);"),
     ("/* vold is copied into vini */", 0, "if((ncont!=0)&&feti_wish()) feti_commit(co,vold);"),
     (" contact(&ncont,ntie,", 0, "if(!feti_wish())"),
     (" contact(&ncont,ntie,", 1, "if(!feti_wish())"),
