@@ -136,7 +136,7 @@ class Run:
         self.ended = "Job finished" in log
         self.increments, self.iterations = (self.lines(where / f"{name}.{kind}") for kind in ("sta", "cvg"))
         self.status = re.findall(r"feti-contact: (FETI_\w+)", log)
-        self.depth = re.findall(r"depth (\S+)", log)
+        self.depth = dict(re.findall(r"pair (\d+): .* depth (\S+)", log))
         self.u = displacements(where / f"{name}.frd")
 
     @staticmethod
@@ -152,7 +152,7 @@ class Run:
 
 
 def short(x):
-    return "-" if x is None else f"{x:.0e}".replace("e-0", "e-").replace("e+0", "e")
+    return "-" if x is None else "0" if x == 0.0 else f"{x:.0e}".replace("e-0", "e-").replace("e+0", "e")
 
 
 def main():
@@ -168,7 +168,7 @@ def main():
         own, feti, yielding, stiffer = (Run(build, name, text, wish) for wish in ("", "feti", "compliance", None))
         points = [float(line.split(",")[k]) for line in text.splitlines() if re.match(r" *\d+ *,( *[-+.\dEe]+ *,){2} *[-+.\dEe]+ *$", line) for k in (1, 2, 3)]
         size = max(max(points[k::3]) - min(points[k::3]) for k in range(3)) if points else 1.0
-        depth = max((float(d) for d in feti.depth[-4:]), default=0.0) / size
+        depth = max((float(d) for d in feti.depth.values()), default=0.0) / size
         again = feti.status.count("FETI_INDEFINITE")
         bad = sorted({s[5:] for s in feti.status} - {"OK", "MARGINAL", "INDEFINITE"})
         if not feti.ended:
