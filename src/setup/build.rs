@@ -171,7 +171,7 @@ impl Prepared {
                 let Some(inverse) = &own.inverse else { continue };
                 let (kplus, kept) = (Arc::clone(&inverse.kplus), own.operator.take());
                 let (size, implicit) = (operators.sizes[p], operators.implicit[p]);
-                let may_wait = operators.may_wait && !implicit && kplus.host().is_some();
+                let may_wait = operators.may_wait() && !implicit && kplus.host().is_some();
                 let ledger = may_wait.then(|| Arc::clone(self.ledgers.entry(p).or_default()));
                 parts.push(dual::BodyShare { kplus, by, kept, size, implicit, ledger });
             }

@@ -11,8 +11,6 @@ pub struct Operators {
     options: Options,
     pub sizes: Vec<Size>,
     pub implicit: Vec<bool>,
-    /// An operator whose K+ is a function of the host is assembled when use shows that it pays.
-    pub may_wait: bool,
     /// Bytes of all operators.
     pub bytes: usize,
     /// Bytes of all factors, shared factors counted once, plus the largest work arrays of their computation.
@@ -27,8 +25,12 @@ impl Operators {
     pub fn new(settings: &Settings, sizes: Vec<Size>, factor_bytes: usize) -> Self {
         let implicit = implicit(settings, &sizes, factor_bytes);
         let bytes = all_bytes(&sizes, &implicit);
-        let may_wait = may_wait(settings);
-        Self { options: options(settings), sizes, implicit, may_wait, bytes, factor_bytes }
+        Self { options: options(settings), sizes, implicit, bytes, factor_bytes }
+    }
+
+    /// Whether an operator whose K+ is a function of the host is assembled when use shows that it pays.
+    pub fn may_wait(&self) -> bool {
+        may_wait(self.options)
     }
 
     /// Work of the assembly of each, in operations.
@@ -48,7 +50,7 @@ impl Operators {
         let of_host = || self.sizes.iter().any(Size::is_of_host);
         options(settings) == self.options
             || implicit(settings, &self.sizes, self.factor_bytes) == self.implicit
-                && (may_wait(settings) == self.may_wait || !of_host())
+                && (may_wait(options(settings)) == self.may_wait() || !of_host())
     }
 
     /// Extends the error of insufficient memory by the body that takes most.
@@ -78,8 +80,8 @@ fn implicit(settings: &Settings, sizes: &[Size], factor_bytes: usize) -> Vec<boo
     }
 }
 
-fn may_wait(settings: &Settings) -> bool {
-    settings.dual_operator == OperatorForm::Automatic
+fn may_wait((form, _): Options) -> bool {
+    form == OperatorForm::Automatic
 }
 
 fn options(settings: &Settings) -> Options {

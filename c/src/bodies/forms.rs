@@ -1,12 +1,11 @@
 //! Stiffness matrices of bodies by their profile and by triplets, which the library converts to rows.
 
 use crate::bodies::body::body_of_order;
-use crate::bodies::stiffness::storage_of;
+use crate::bodies::stiffness::{borrows, storage_of};
 use crate::boundary::{
     base_of, column_pointers, count, enter, input, input_or_none, meaning, numbers, twins,
 };
-use crate::header::types::{feti_problem, FETI_BORROW, FETI_COPY, FETI_SKYLINE_DOWN, FETI_SKYLINE_UP};
-use feti_contact::error::Result;
+use crate::header::types::{feti_problem, FETI_SKYLINE_DOWN, FETI_SKYLINE_UP};
 use feti_contact::solver::{Direction, SkylineInput, TripletInput};
 
 twins! {
@@ -45,7 +44,7 @@ twins! {
             let base = base_of(base)?;
             let known = [(FETI_SKYLINE_DOWN, Direction::Down), (FETI_SKYLINE_UP, Direction::Up)];
             let direction = meaning(direction, "direction", &known, "neither FETI_SKYLINE_DOWN nor FETI_SKYLINE_UP")?;
-            check_flags(flags)?;
+            borrows(flags)?;
             // SAFETY: n numbers or NULL, guaranteed by the caller.
             let diag = unsafe { input_or_none(diag, n, "diag") }?;
             // SAFETY: n + 1 positions guaranteed by the caller.
@@ -90,7 +89,7 @@ twins! {
             let (body, n) = body_of_order(problem, body, n)?;
             let nnz = count(nnz, "nnz")?;
             let (base, storage) = (base_of(base)?, storage_of(storage)?);
-            check_flags(flags)?;
+            borrows(flags)?;
             // SAFETY: nnz numbers each, guaranteed by the caller.
             let (row, col, val) = unsafe {
                 (numbers(row, nnz, base, "row")?, numbers(col, nnz, base, "col")?, input(val, nnz, "val")?)
@@ -99,8 +98,4 @@ twins! {
             given.map_err(|error| error.index_from(base))
         })
     }
-}
-
-fn check_flags(flags: i32) -> Result<()> {
-    meaning(flags, "flags", &[(FETI_COPY, ()), (FETI_BORROW, ())], "neither FETI_COPY nor FETI_BORROW")
 }

@@ -100,9 +100,7 @@ impl<I: Index> SparseMatrix<I> {
             let (body, n) = body_of_order(problem, body, self.n)?;
             let (base, storage) = (base_of(self.base)?, storage_of(self.storage)?);
             let of_call = |error: Error| error.index_from(base);
-            let flags = [(FETI_COPY, false), (FETI_BORROW, true)];
-            let borrow = meaning(self.flags, "flags", &flags, "neither FETI_COPY nor FETI_BORROW")?;
-            let borrow = borrow && diag.is_none() && storage == Storage::Lower;
+            let borrow = borrows(self.flags)? && diag.is_none() && storage == Storage::Lower;
             // SAFETY: n numbers guaranteed by the caller.
             let diag = diag.map(|diag| unsafe { input(diag, n, "diag") }).transpose()?;
             // SAFETY: n + 1 positions guaranteed by the caller.
@@ -178,6 +176,12 @@ pub unsafe extern "C" fn feti_body_stiffness_dense(
         // SAFETY: ld (n - 1) + n entries guaranteed by the caller.
         problem.set_stiffness_dense(body, n, unsafe { input(k, entries, "k") }?, ld, storage)
     })
+}
+
+/// Whether the host's arrays may be used in place.
+pub fn borrows(flags: i32) -> Result<bool> {
+    let known = [(FETI_COPY, false), (FETI_BORROW, true)];
+    meaning(flags, "flags", &known, "neither FETI_COPY nor FETI_BORROW")
 }
 
 pub fn storage_of(storage: i32) -> Result<Storage> {
