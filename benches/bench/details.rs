@@ -9,7 +9,7 @@ const COUNTS: [&str; 8] =
     ["dofs", "pieces", "rows", "closed", "products", "implicit", "second_products", "entries"];
 
 /// Medians in seconds.
-const TIMES: [(Program, &str); 37] = [
+const TIMES: [(Program, &str); 39] = [
     (Program::Cut(1), "hand_over_cpu"),
     (Program::Cut(1), "cut_cpu"),
     (Program::Cut(1), "first_cpu"),
@@ -43,6 +43,8 @@ const TIMES: [(Program, &str); 37] = [
     (Program::Faer(1), "cpu"),
     (Program::Factor(2), "wall"),
     (Program::Faer(2), "wall"),
+    (Program::HostLoop(6), "cpu"),
+    (Program::HostLoop(9), "cpu"),
     (Program::Clarabel, "cpu"),
     (Program::Osqp, "cpu"),
     (Program::Ours(2), "first_wall"),
@@ -60,7 +62,7 @@ pub fn print(case: &Case, runs: &Runs, blas: &str) {
         }
     }
     println!("    {} rounds", case.rounds);
-    for peer in [Program::Clarabel, Program::Osqp] {
+    for peer in [Program::HostLoop(6), Program::HostLoop(9), Program::Clarabel, Program::Osqp] {
         if median(peer, "solved") == Some(0.0) {
             println!("    {} found no solution in its time: its ratio is a lower bound", peer.name());
         }

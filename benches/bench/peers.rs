@@ -14,30 +14,32 @@ use crate::programs::{output, Program};
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const WORK: &str = env!("CARGO_TARGET_TMPDIR");
 
+/// Programs in C that call CHOLMOD.
+const BY_CHOLMOD: [&str; 2] = ["cholmod", "hostloop"];
 /// Python packages of the peers.
 const PACKAGES: [&str; 4] = ["numpy", "scipy", "clarabel", "osqp"];
 
 pub struct Peers {
     folder: PathBuf,
-    cholmod: PathBuf,
     /// Python with the packages; none where it cannot be set up.
     python: Option<PathBuf>,
 }
 
 impl Peers {
-    /// Compiles the C program, and sets up the Python packages once.
+    /// Compiles the programs in C, and sets up the Python packages once.
     pub fn set_up(packages: bool) -> Result<Self, String> {
         let folder = Path::new(WORK).join("bench");
         fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let cholmod = folder.join("cholmod");
-        output(
-            compiler("gcc", &folder)
-                .args(["-std=c99", "benches/bench/cholmod.c", "-o"])
-                .arg(&cholmod)
-                .args(["-lcholmod", "-lm", "-ldl"]),
-        )?;
+        for name in BY_CHOLMOD {
+            let mut gcc = compiler("gcc", &folder);
+            gcc.args(["-std=c99", "-O2"])
+                .arg(format!("benches/bench/{name}.c"))
+                .arg("-o")
+                .arg(folder.join(name));
+            output(gcc.args(["-lcholmod", "-lm", "-ldl"]))?;
+        }
         let python = if packages { python(&folder.join("python")) } else { None };
-        Ok(Self { folder, cholmod, python })
+        Ok(Self { folder, python })
     }
 
     pub fn has_packages(&self) -> bool {
@@ -112,8 +114,13 @@ impl Peers {
             Program::Surfaces(threads) => own("surfaces", threads),
             Program::Factor(threads) => own("factor", threads),
             Program::Cholmod(_) => {
-                let mut command = Command::new(&self.cholmod);
+                let mut command = Command::new(self.folder.join("cholmod"));
                 command.arg(self.matrix(deck)).arg(BYTES.to_string());
+                Ok(command)
+            }
+            Program::HostLoop(digits) => {
+                let mut command = Command::new(self.folder.join("hostloop"));
+                command.arg(self.problem(deck)).arg(format!("1e-{digits}")).arg(BYTES.to_string());
                 Ok(command)
             }
             Program::Faer(threads) => {

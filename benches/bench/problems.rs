@@ -46,7 +46,7 @@ pub struct Case {
     pub rounds: usize,
 }
 
-/// The deck that Clarabel and OSQP solve too; slow as they are, they are run once.
+/// The deck that a host's own loop, Clarabel and OSQP solve too; slow as they are, they are run once.
 pub const PEERS: &str = "40k_peers";
 
 /// Small decks first: a figure that short runs leave noisy gets more of them.
@@ -98,9 +98,11 @@ pub fn case(name: &str) -> Option<&'static Case> {
 impl Case {
     /// What is run, in the order in which the programs take turns.
     pub fn programs(&self) -> Vec<Program> {
-        use Program::{Cholmod, Clarabel, Cut, Factor, Faer, Frictionless, Later, Osqp, Ours, Parts, Pieces};
+        use Program::{
+            Cholmod, Clarabel, Cut, Factor, Faer, Frictionless, HostLoop, Later, Osqp, Ours, Parts, Pieces,
+        };
         match self.model {
-            Model::Blocks(_) if self.name == PEERS => vec![Ours(1), Clarabel, Osqp],
+            Model::Blocks(_) if self.name == PEERS => vec![Ours(1), HostLoop(6), HostLoop(9), Clarabel, Osqp],
             Model::Blocks(_) => vec![Ours(1), Cholmod(1), Ours(2), Cholmod(2), Parts],
             Model::Rubbing(_) => vec![Ours(1), Frictionless, Ours(2)],
             Model::OneBody(_) => vec![Ours(1), Ours(2)],

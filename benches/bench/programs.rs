@@ -17,6 +17,8 @@ pub enum Program {
     Later,
     /// CHOLMOD's analysis and factorisation on so many threads.
     Cholmod(usize),
+    /// A host's own loop of penalty and active set around CHOLMOD, on one thread, to an accuracy of 10^-k.
+    HostLoop(usize),
     /// The parts of the setup.
     Parts,
     /// The numeric factorisation of one K on so many threads.
@@ -40,6 +42,7 @@ impl Program {
             Program::Pieces(pieces) => format!("pieces_{pieces}"),
             Program::Later => "later".into(),
             Program::Cholmod(threads) => format!("cholmod_{threads}"),
+            Program::HostLoop(digits) => format!("host_loop_{digits}"),
             Program::Parts => "parts".into(),
             Program::Factor(threads) => format!("factor_{threads}"),
             Program::Faer(threads) => format!("faer_{threads}"),
@@ -52,8 +55,8 @@ impl Program {
 
     /// What `Peers::write` writes for a deck.
     pub fn reads_files(self) -> bool {
-        use Program::{Cholmod, Clarabel, Faer, Osqp};
-        matches!(self, Cholmod(_) | Faer(_) | Clarabel | Osqp)
+        use Program::{Cholmod, Clarabel, Faer, HostLoop, Osqp};
+        matches!(self, Cholmod(_) | HostLoop(_) | Faer(_) | Clarabel | Osqp)
     }
 
     /// Bodies come by their elements.
