@@ -216,7 +216,9 @@ fn described(info: &OptionInfo) -> feti_option {
             option.r#type = FETI_OPTION_I64;
             (option.default_i64, option.default_f64) = (value, value as f64);
         }
-        OptionValue::Str(value) => (option.r#type, option.default_str) = (FETI_OPTION_STR, value.as_ptr()),
+        OptionValue::Str(value) | OptionValue::Text(value) => {
+            (option.r#type, option.default_str) = (FETI_OPTION_STR, value.as_ptr());
+        }
     }
     option
 }

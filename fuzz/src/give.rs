@@ -355,6 +355,8 @@ pub fn option(host: &mut Host) {
         assert_eq!(feti_option_at(host.bytes.below(count) as i64, &mut option), FETI_OK);
         (option, std::ffi::CStr::from_ptr(option.name))
     };
+    // a file of any name
+    let name = if name == c"log_file" { c"log_level" } else { name };
     let name_at = if host.turn() { std::ptr::null() } else { name.as_ptr() };
     let choice = host.bytes.byte();
     let status = match option.r#type {
@@ -411,6 +413,8 @@ fn word_option(host: &mut Host, name: *const c_char, choice: u8) -> i32 {
         "paper-feasible",
         "paper-monotone",
         "paper-extrapolating",
+        "phase",
+        "step",
     ];
     let word = CString::new(WORDS[usize::from(choice) % WORDS.len()]).expect("no NUL");
     let word = if host.turn() { std::ptr::null() } else { word.as_ptr() };

@@ -23,8 +23,16 @@ pub fn run(data: &[u8]) {
     assert_eq!(unsafe { feti_problem_destroy(&mut p) }, FETI_OK);
 }
 
-/// A name of the list, or any text.
+/// A name of the list, or any text; `log_file` would write files of any name.
 fn name(bytes: &mut Bytes) -> CString {
+    let name = any_name(bytes);
+    match name.as_bytes() == b"log_file" {
+        true => c"log_level".to_owned(),
+        false => name,
+    }
+}
+
+fn any_name(bytes: &mut Bytes) -> CString {
     if bytes.chance(96) {
         return text(bytes, 24);
     }
@@ -103,6 +111,9 @@ unsafe fn whole_text(p: *mut feti_problem, bytes: &mut Bytes) {
             _ => items.extend_from_slice(format!("{value}").as_bytes()),
         }
         items.extend_from_slice([&b" "[..], b",", b"\n", b" # "][bytes.below(4)]);
+    }
+    if items.windows(8).any(|bytes| bytes == b"log_file") {
+        return;
     }
     let items = CString::new(items).expect("no NUL");
     let (mut before, mut after) = (Out::<f64>::new(1), Out::<f64>::new(1));

@@ -27,4 +27,6 @@ pub use pairs::{Geometry, Met, Pair, PairMethod, PairRows, Pairs, SurfaceSizes, 
 pub use parts::{Joint, Part, Parts};
 pub use row_sets::{contradiction, kind_and_row, proof_of_rows, PER_ENTRY};
 pub use settings::{options, OptionInfo, OptionValue, Settings};
-pub use words::{FinishBy, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word};
+pub use words::{
+    FinishBy, LogTo, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word,
+};

@@ -4,7 +4,7 @@ use std::ffi::CStr;
 
 use crate::error::{Error, Result};
 use crate::model::words::{
-    FinishBy, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word,
+    FinishBy, LogTo, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word,
 };
 use crate::numbers::data::{MANY, NO_LIMIT};
 
@@ -13,6 +13,8 @@ pub enum OptionValue {
     F64(f64),
     I64(i64),
     Str(&'static CStr),
+    /// A text of the host, not one of a few words.
+    Text(&'static CStr),
 }
 
 /// One option in the list for the host. `minimum` and `maximum` bound numbers.
@@ -30,9 +32,10 @@ enum Location {
     F64(fn(&mut Settings) -> &mut f64),
     I64(fn(&mut Settings) -> &mut i64),
     Str(fn(&mut Settings) -> &mut dyn Word),
+    Text(fn(&mut Settings) -> &mut String),
 }
 
-/// The range of an option with words.
+/// The range of an option that is a text.
 const NO_RANGE: std::ops::RangeInclusive<f64> = 0.0..=0.0;
 
 const fn c_text(terminated: &'static str) -> &'static CStr {
@@ -89,6 +92,10 @@ settings! {
         c"Effect of a number of the host (feti_body_numbering) that unknowns of several bodies share, from the next call of that function on. 0: the number is refused; 1: these unknowns move together, joined by internal equality rows.";
     index_base: i64 = I64(0), 0.0..=1.0,
         c"Base of the numbers in error texts: 0 for C, 1 for Fortran.";
+    log_file: String = Text(c""), NO_RANGE,
+        c"Path of a file to which the lines of the log of setups and solves are added, from level result to that of option log_level, one by one; empty: none. If it cannot be opened, the option is refused.";
+    log_level: LogTo = Str(LogTo::WORDS[0]), NO_RANGE,
+        c"Amount of lines in log_file, as of feti_on_log: phase; result, which is less; step, which is more.";
     fault_injection: i64 = I64(0), 0.0..=1.0,
         c"1: the next feti_solve fails with FETI_INTERNAL, so that a host can test its own error handling.";
     without: i64 = I64(0), 0.0..=MANY,
@@ -163,8 +170,14 @@ impl Settings {
 
     pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
         let option = find(name)?;
-        let Location::Str(field) = &option.field else { return Err(wrong_type(option)) };
-        let field = field(self);
+        let field = match &option.field {
+            Location::Str(field) => field(self),
+            Location::Text(field) => {
+                value.clone_into(field(self));
+                return Ok(());
+            }
+            _ => return Err(wrong_type(option)),
+        };
         // hosts and problem files of version 0.2 may ask for a method that has been removed
         let value = if (name, value) == ("method", "smalbe") { "proportioning" } else { value };
         if field.take(value.as_bytes()) {
@@ -189,8 +202,18 @@ impl Settings {
 
     pub fn get_str(&self, name: &str) -> Result<String> {
         let option = find(name)?;
-        let OptionValue::Str(word) = option.value(self) else { return Err(wrong_type(option)) };
-        Ok(word.to_string_lossy().into_owned())
+        match (option.value(self), &option.field) {
+            (_, Location::Text(field)) => Ok(field(&mut self.clone()).clone()),
+            (OptionValue::Str(word), _) => Ok(word.to_string_lossy().into_owned()),
+            _ => Err(wrong_type(option)),
+        }
+    }
+
+    /// Takes the options that belong to the host, and not to a problem in a file, from other settings.
+    pub fn keep_of_host(&mut self, other: &Self) {
+        self.index_base = other.index_base;
+        self.log_file.clone_from(&other.log_file);
+        self.log_level = other.log_level;
     }
 }
 
@@ -202,6 +225,7 @@ impl OptionInfo {
             Location::F64(field) => OptionValue::F64(*field(settings)),
             Location::I64(field) => OptionValue::I64(*field(settings)),
             Location::Str(field) => OptionValue::Str(field(settings).word()),
+            Location::Text(_) => self.default,
         }
     }
 }
@@ -233,7 +257,7 @@ fn wrong_type(option: &OptionInfo) -> Error {
     let kind = match option.default {
         OptionValue::F64(_) => "a real number (f64)",
         OptionValue::I64(_) => "a whole number (i64)",
-        OptionValue::Str(_) => "a text (str)",
+        OptionValue::Str(_) | OptionValue::Text(_) => "a text (str)",
     };
     Error::argument("name", format!("option \"{}\" is {kind}", option.name.to_string_lossy()))
 }
@@ -274,7 +298,7 @@ mod tests {
                     assert_eq!(settings.get_i64(name).unwrap(), value);
                     value as f64
                 }
-                OptionValue::Str(value) => {
+                OptionValue::Str(value) | OptionValue::Text(value) => {
                     assert_eq!(settings.get_str(name).unwrap().as_bytes(), value.to_bytes());
                     continue;
                 }

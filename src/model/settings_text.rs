@@ -1,7 +1,12 @@
 //! Options as a text: `tolerance=1e-8 threads=4`.
 
+use std::ffi::CStr;
+
 use crate::error::{Error, Kind, Result};
 use crate::model::settings::{find, options, OptionInfo, OptionValue, Settings};
+
+/// Options that a problem in a file has not.
+const OF_HOST: [&CStr; 3] = [c"index_base", c"log_file", c"log_level"];
 
 /// One `name = value` of a text, and the bytes at which name and value begin.
 #[derive(Debug, PartialEq)]
@@ -41,7 +46,7 @@ impl Settings {
         };
         match find(name)?.default {
             OptionValue::I64(_) => self.set_i64(name, value.parse().map_err(|_| wrong("a whole number"))?),
-            OptionValue::Str(_) => self.set_str(name, value),
+            OptionValue::Str(_) | OptionValue::Text(_) => self.set_str(name, value),
             OptionValue::F64(_) => {
                 // Fortran writes 1d-8
                 let number = value.replace(['d', 'D'], "e").parse();
@@ -50,17 +55,19 @@ impl Settings {
         }
     }
 
-    /// The options that differ from their defaults, as a text for `set_text`, without `index_base`, which belongs to the
-    /// host.
+    /// The options that differ from their defaults, as a text for `set_text`, without those that belong to the
+    /// host ([`Self::keep_of_host`]).
     pub fn changes(&self) -> String {
-        let of_host = |option: &OptionInfo| option.name == c"index_base";
+        let of_host = |option: &OptionInfo| OF_HOST.contains(&option.name);
         let changed = |option: &&OptionInfo| !of_host(option) && option.value(self) != option.default;
         let item = |option: &OptionInfo| {
             let name = option.name.to_string_lossy();
             match option.value(self) {
                 OptionValue::F64(value) => format!("{name}={value:e}"),
                 OptionValue::I64(value) => format!("{name}={value}"),
-                OptionValue::Str(word) => format!("{name}={}", word.to_string_lossy()),
+                OptionValue::Str(word) | OptionValue::Text(word) => {
+                    format!("{name}={}", word.to_string_lossy())
+                }
             }
         };
         options().iter().filter(changed).map(item).collect::<Vec<_>>().join(" ")
@@ -197,10 +204,14 @@ mod tests {
                     let last = known.split_once(", not").unwrap().0.rsplit(' ').next().unwrap();
                     settings.set_str(name, last).unwrap();
                 }
+                OptionValue::Text(_) => settings.set_str(name, "a file").unwrap(),
             }
         }
         let text = settings.changes();
-        assert_eq!(text.split(' ').count(), options().len() - 1, "{text}");
-        assert_eq!(set(&text).unwrap(), Settings { index_base: 0, ..settings });
+        assert_eq!(text.split(' ').count(), options().len() - OF_HOST.len(), "{text}");
+        let mut back = set(&text).unwrap();
+        assert_ne!(back, settings);
+        back.keep_of_host(&settings);
+        assert_eq!(back, settings);
     }
 }

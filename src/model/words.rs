@@ -57,6 +57,8 @@ words! {
     StartFrom: Cold = c"cold", Previous = c"previous";
     /// `finish`
     FinishBy: Automatic = c"automatic", None = c"none", Direct = c"direct";
+    /// `log_level`
+    LogTo: Phase = c"phase", Result = c"result", Step = c"step";
     /// `paper_units`
     PaperUnits: Relative = c"relative", Printed = c"printed";
     /// `paper_step_1`

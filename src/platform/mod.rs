@@ -1,5 +1,6 @@
 //! Services of the machine: memory, threads, locks, interruption.
 
+pub mod files;
 mod fork;
 pub mod interrupt;
 mod mapping;

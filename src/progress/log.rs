@@ -1,9 +1,13 @@
 //! Lines of text for the host: phases, steps, and lines of other modules.
 
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{Error, Kind, Result};
+use crate::platform::files::{failed, regular};
 use crate::platform::interrupt;
 use crate::progress::listener::Progress;
 use crate::progress::phases::PhaseReport;
@@ -23,17 +27,30 @@ pub enum LogLevel {
 /// Receives the level and the text of a line, without line end; a result other than 0 ends the call.
 pub type LogListener = Box<dyn FnMut(LogLevel, &str) -> i32 + Send + Sync>;
 
-/// The host's log function; clones share it.
+/// The host's log function and its log file; clones share them.
 #[derive(Clone, Default)]
 pub struct Log {
     host: Arc<Mutex<Option<(LogLevel, LogListener)>>>,
+    file: Option<(LogLevel, Arc<File>)>,
     /// Number of phases already reported.
     told: Arc<AtomicUsize>,
 }
 
 impl Log {
-    pub fn new(host: Option<(LogLevel, LogListener)>) -> Self {
-        Self { host: Arc::new(Mutex::new(host)), ..Self::default() }
+    /// The function that receives the lines from now on.
+    pub fn tell_host(&mut self, host: Option<(LogLevel, LogListener)>) {
+        self.host = Arc::new(Mutex::new(host));
+    }
+
+    /// The file to the end of which the lines go from now on; without a path none.
+    pub fn tell_file(&mut self, path: &str, most: LogLevel) -> Result<()> {
+        let open = |path: &Path| {
+            regular(path)?;
+            let file = OpenOptions::new().append(true).create(true).open(path);
+            Ok((most, Arc::new(file.map_err(|e| failed(path, "open", &e))?)))
+        };
+        self.file = (!path.is_empty()).then(|| open(Path::new(path))).transpose()?;
+        Ok(())
     }
 
     /// Begins a call: no phase has been reported.
@@ -41,17 +58,30 @@ impl Log {
         self.told.store(0, Ordering::Relaxed);
     }
 
+    fn file(&self, level: LogLevel) -> Option<&File> {
+        self.file.as_ref().filter(|(most, _)| level <= *most).map(|(_, file)| &**file)
+    }
+
     /// Whether the host wants lines of this level.
     pub fn is_heard(&self, level: LogLevel) -> bool {
-        self.host.lock().is_ok_and(|host| host.as_ref().is_some_and(|(most, _)| level <= *most))
+        self.file(level).is_some()
+            || self.host.lock().is_ok_and(|host| host.as_ref().is_some_and(|(most, _)| level <= *most))
     }
 
     pub fn say(&self, level: LogLevel, text: impl FnOnce() -> String) -> Result<()> {
         let mut host = self.host.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some((_, listener)) = host.as_mut().filter(|(most, _)| level <= *most) else {
+        let listener = host.as_mut().filter(|(most, _)| level <= *most);
+        let file = self.file(level);
+        if file.is_none() && listener.is_none() {
             return Ok(());
-        };
-        match interrupt::never(|| listener(level, &text())) {
+        }
+        let text = text();
+        if let Some(mut file) = file {
+            // one write for a line: it is with the system at once, and no line of another problem comes between; a full disk ends no solve
+            let _ = file.write_all(format!("{text}\n").as_bytes());
+        }
+        let Some((_, listener)) = listener else { return Ok(()) };
+        match interrupt::never(|| listener(level, &text)) {
             0 => Ok(()),
             number => {
                 let what = format!("the log function of the host returned {number}");

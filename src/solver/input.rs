@@ -32,12 +32,6 @@ input! {
     /// Sets an integer option.
     fn set_i64(&mut self, name: &str, value: i64) -> Result<()>;
 
-    /// Sets an option by its word, or by the text of its number.
-    fn set_str(&mut self, name: &str, value: &str) -> Result<()>;
-
-    /// Sets options by a text such as `tolerance=1e-8 threads=4`: all of them or none.
-    fn set_text(&mut self, text: &str) -> Result<()>;
-
     /// Adds a body with `n` unknowns and returns its number.
     fn add_body(&mut self, n: usize) -> Result<usize>;
 
@@ -263,8 +257,18 @@ input! {
 }
 
 impl Problem {
+    /// Sets an option by its word or text.
+    pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
+        self.set_options("value", |model| model.set_str(name, value))
+    }
+
+    /// Sets options by a text such as `tolerance=1e-8 threads=4`: all of them or none.
+    pub fn set_text(&mut self, text: &str) -> Result<()> {
+        self.set_options("text", |model| model.set_text(text))
+    }
+
     /// Takes over the content of a file. The problem must be empty; after an error it is still empty. Options are those
-    /// of the file, all others have their defaults; `index_base` is unchanged.
+    /// of the file, all others have their defaults; `index_base`, `log_file` and `log_level` are unchanged.
     pub fn read_file(&mut self, path: &Path) -> Result<()> {
         self.check_read_together()?;
         self.model.read_file(path)

@@ -8,12 +8,12 @@ use std::time::Instant;
 use crate::body::Lending;
 use crate::decomposition::{Connected, Decomposition};
 use crate::error::{Error, Kind, Result};
-use crate::model::{HostModel, Parts, SolvedModel, StartFrom};
+use crate::model::{HostModel, LogTo, Parts, Settings, SolvedModel, StartFrom};
 #[cfg(test)]
 use crate::platform::interrupt::Clock;
 use crate::platform::memory::Headroom;
 use crate::platform::stopwatch;
-use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
+use crate::progress::{Host, Listener, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::ranks::Traffic;
 use crate::setup::{Duals, Prepared, Work};
 use crate::solve::{solve_islands, Answer, DualMethod, Report, Stays};
@@ -233,7 +233,30 @@ impl Problem {
 
     /// The function that receives log lines up to a level from now on.
     pub fn on_log(&mut self, listener: Option<(LogLevel, LogListener)>) {
-        self.host.log = Log::new(listener);
+        self.host.log.tell_host(listener);
+    }
+
+    /// Changes options; if the file of the log cannot be opened, none.
+    pub(super) fn set_options(
+        &mut self,
+        argument: &'static str,
+        set: impl FnOnce(&mut HostModel) -> Result<()>,
+    ) -> Result<()> {
+        let before = self.model.settings.clone();
+        set(&mut self.model)?;
+        let Settings { log_file, log_level, .. } = &self.model.settings;
+        if (log_file, *log_level) == (&before.log_file, before.log_level) {
+            return Ok(());
+        }
+        let most = match log_level {
+            LogTo::Result => LogLevel::Result,
+            LogTo::Phase => LogLevel::Phase,
+            LogTo::Step => LogLevel::Step,
+        };
+        self.host.log.tell_file(log_file, most).map_err(|error| {
+            self.model.settings = before;
+            Error::argument(argument, format!("option \"log_file\": {}", error.what))
+        })
     }
 
     /// If any thread sets it to true, the running setup or solve ends; the next call clears it first.

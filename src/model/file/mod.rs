@@ -17,6 +17,7 @@ use crate::mesh::Mesh;
 use crate::model::bodies::SPOILED;
 use crate::model::file::write::Bodies;
 use crate::model::host::HostModel;
+use crate::platform::files::{failed, regular};
 use crate::platform::memory::reserved;
 
 /// Bytes per write to the system.
@@ -76,12 +77,11 @@ impl HostModel {
         Ok(())
     }
 
-    /// Takes over bodies with their numbers, rows and options of another model; `index_base` is unchanged.
-    fn adopt(&mut self, other: Self) {
-        let (rows, index_base) = (self.revisions.rows, self.settings.index_base);
+    /// Takes over bodies with their numbers, rows and options of another model; those that belong to the host are unchanged.
+    fn adopt(&mut self, mut other: Self) {
+        other.settings.keep_of_host(&self.settings);
+        other.revisions.rows += self.revisions.rows + 1;
         *self = other;
-        self.settings.index_base = index_base;
-        self.revisions.rows += rows + 1;
     }
 
     /// Checks that the library has all input: no functions in place of a matrix, no refused values, no incomplete first
@@ -125,16 +125,6 @@ impl HostModel {
     }
 }
 
-/// Refuses a path to a device or a folder; a file that does not exist is accepted.
-fn regular(path: &Path) -> Result<()> {
-    match fs::metadata(path) {
-        Ok(found) if !found.is_file() => {
-            Err(Error::new(Kind::Io, format!("{}: open: this is not a regular file", path.display())))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Creates a new file in the folder of `target`.
 fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
     static NUMBER: AtomicUsize = AtomicUsize::new(0);
@@ -147,10 +137,6 @@ fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
             Err(error) => return Err(error),
         }
     }
-}
-
-fn failed(path: &Path, operation: &str, error: &io::Error) -> Error {
-    Error::new(Kind::Io, format!("{}: {operation}: {error}", path.display()))
 }
 
 /// Adds the name of the file to an error.

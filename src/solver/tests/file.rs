@@ -54,7 +54,7 @@ fn expected_length(problem: &Problem) -> u64 {
     length(&problem.model, &lengths(&problem.model))
 }
 
-fn of_section(tag: &[u8; 4], flags: u32, payload: &[u8]) -> Vec<u8> {
+pub fn of_section(tag: &[u8; 4], flags: u32, payload: &[u8]) -> Vec<u8> {
     let length = (payload.len() as u64).to_le_bytes();
     let mut bytes = [&tag[..], &flags.to_le_bytes(), &length, payload].concat();
     bytes.resize(bytes.len() + padding(payload.len() as u64) as usize, 0);
@@ -69,7 +69,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 }
 
 /// A file of these sections, written by library 0.9.3.
-fn of_sections(format: u32, sections: &[Vec<u8>]) -> Vec<u8> {
+pub fn of_sections(format: u32, sections: &[Vec<u8>]) -> Vec<u8> {
     let length = HEADER + sections.iter().map(|section| section.len() as u64).sum::<u64>();
     let parts = [&MAGIC[..], &format.to_le_bytes(), &903_u32.to_le_bytes(), &length.to_le_bytes(), &[0; 4]];
     [sealed(parts.concat()), sections.concat()].concat()

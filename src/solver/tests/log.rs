@@ -7,7 +7,7 @@ use crate::error::Kind;
 use crate::solver::{LogLevel, Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
 /// A spring 2 pushed by 6 against a wall at 1, and, if `floats`, a mass that nothing holds or pushes.
-fn spring(floats: bool) -> Problem {
+pub fn spring(floats: bool) -> Problem {
     let mut problem = Problem::new();
     let body = problem.add_body(1).unwrap();
     let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[2.0], storage: Storage::Lower };
@@ -24,10 +24,10 @@ fn spring(floats: bool) -> Problem {
     problem
 }
 
-type Book = Arc<Mutex<Vec<(LogLevel, String)>>>;
+pub type Book = Arc<Mutex<Vec<(LogLevel, String)>>>;
 
 /// Keeps the lines and returns `reply` at line `when`.
-fn listen(problem: &mut Problem, most: LogLevel, when: usize, reply: i32) -> Book {
+pub fn listen(problem: &mut Problem, most: LogLevel, when: usize, reply: i32) -> Book {
     let lines = Book::default();
     let book = Arc::clone(&lines);
     let tell = move |level: LogLevel, text: &str| {
@@ -43,7 +43,7 @@ fn listen(problem: &mut Problem, most: LogLevel, when: usize, reply: i32) -> Boo
     lines
 }
 
-fn told(lines: &Book) -> Vec<(LogLevel, String)> {
+pub fn told(lines: &Book) -> Vec<(LogLevel, String)> {
     std::mem::take(&mut *lines.lock().unwrap())
 }
 

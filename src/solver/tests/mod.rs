@@ -8,6 +8,7 @@ mod glue;
 mod headroom;
 mod lent;
 mod log;
+mod log_file;
 mod numbering;
 mod outcome;
 mod pairs;
