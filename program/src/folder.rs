@@ -1,0 +1,335 @@
+//! A problem as a folder of text files (docs/program.md): K1.mtx, R1.mtx, B.mtx, c.txt, H.mtx, h.txt, T.mtx, friction.txt, f.txt, dofs.txt, options.txt, and
+//! the answer u.txt, lambda.txt, mu.txt, lambda_t.txt.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use feti_contact::solver::{FrictionInput, Modes, Problem, RowKind, RowsInput, TripletInput};
+
+use crate::contents::{Contents, Matrix, MODES};
+
+const KINDS: [(&str, &str, RowKind); 2] =
+    [("B.mtx", "c.txt", RowKind::Inequality), ("H.mtx", "h.txt", RowKind::Equality)];
+
+/// The numbers of a text file, and the first line; none if there is no file.
+struct Text {
+    name: String,
+    first: String,
+    numbers: Vec<f64>,
+}
+
+fn text(folder: &Path, name: &str) -> Result<Option<Text>, String> {
+    let path = folder.join(name);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let said = |why: String| format!("{}: {why}", path.display());
+    let all = fs::read_to_string(&path).map_err(|error| said(error.to_string()))?;
+    let first = all.lines().next().unwrap_or_default().to_owned();
+    let data = all.lines().enumerate().filter(|(_, line)| !line.starts_with(['%', '#']));
+    let words = data.flat_map(|(k, line)| line.split_whitespace().map(move |word| (k, word)));
+    let number = |(k, word): (usize, &str)| {
+        word.parse().map_err(|_| said(format!("line {}: {word} is no number", k + 1)))
+    };
+    Ok(Some(Text { name: name.to_owned(), first, numbers: words.map(number).collect::<Result<_, _>>()? }))
+}
+
+impl Text {
+    fn said(&self, why: &str) -> String {
+        format!("{}: {why}", self.name)
+    }
+
+    fn size(&self, k: usize) -> Result<usize, String> {
+        let number = self
+            .numbers
+            .get(k)
+            .filter(|number| **number >= 0.0 && number.fract() == 0.0 && **number < 2f64.powi(53));
+        number.map(|number| *number as usize).ok_or_else(|| self.said("a size is missing"))
+    }
+
+    /// Rows, columns, and the entries with row and column from 0; symmetric matrices as they are stored.
+    fn triplets(&self) -> Result<(usize, usize, Vec<(usize, usize, f64)>), String> {
+        let (rows, columns) = (self.size(0)?, self.size(1)?);
+        if self.first.contains("array") {
+            let values = self.numbers.get(2..).unwrap_or_default();
+            if values.len() != rows.saturating_mul(columns) {
+                return Err(self.said(&format!("{} values, not {rows} x {columns}", values.len())));
+            }
+            let at = |(k, value): (usize, &f64)| (k % rows.max(1), k / rows.max(1), *value);
+            return Ok((rows, columns, values.iter().enumerate().map(at).collect()));
+        }
+        let (entries, data) = (self.size(2)?, self.numbers.get(3..).unwrap_or_default());
+        if data.len() != entries.saturating_mul(3) {
+            return Err(self.said(&format!("{} numbers, not those of {entries} entries", data.len())));
+        }
+        let inside =
+            |x: f64, most: usize| (x >= 1.0 && x <= most as f64 && x.fract() == 0.0).then(|| x as usize - 1);
+        let entry = |e: &[f64]| {
+            let place = inside(e[0], rows).zip(inside(e[1], columns));
+            place
+                .map(|(i, j)| (i, j, e[2]))
+                .ok_or_else(|| self.said(&format!("entry {} {} is outside", e[0], e[1])))
+        };
+        Ok((rows, columns, data.chunks_exact(3).map(entry).collect::<Result<_, _>>()?))
+    }
+
+    fn by_rows(&self, unknowns: usize) -> Result<(Vec<usize>, Vec<i64>, Vec<f64>), String> {
+        let (rows, columns, mut entries) = self.triplets()?;
+        if columns != unknowns {
+            return Err(self.said(&format!("{columns} columns, not the {unknowns} unknowns of all bodies")));
+        }
+        entries.sort_by_key(|(i, _, _)| *i);
+        let ptr = (0..=rows).map(|i| entries.partition_point(|entry| entry.0 < i)).collect();
+        Ok((
+            ptr,
+            entries.iter().map(|entry| entry.1 as i64).collect(),
+            entries.iter().map(|entry| entry.2).collect(),
+        ))
+    }
+
+    /// Column k of a table with so many columns.
+    fn column(&self, k: usize, columns: usize) -> Vec<f64> {
+        self.numbers.iter().skip(k).step_by(columns.max(1)).copied().collect()
+    }
+}
+
+pub fn read(folder: &Path) -> Result<Problem, String> {
+    let mut problem = Problem::new();
+    problem.offer_method(&paper::Paper);
+    let told = |error: feti_contact::error::Error| format!("{}: {error}", folder.display());
+    if let Ok(options) = fs::read_to_string(folder.join("options.txt")) {
+        problem.set_text(&options).map_err(told)?;
+    }
+    let mut starts = vec![0];
+    while let Some(k) = text(folder, &format!("K{}.mtx", starts.len()))? {
+        let (n, _, entries) = k.triplets()?;
+        let body = problem.add_body(n).map_err(told)?;
+        let is_general = k.first.contains("general");
+        let lower: Vec<_> = entries.into_iter().filter(|(i, j, _)| !is_general || i >= j).collect();
+        let [row, col] =
+            [0, 1].map(|k| lower.iter().map(|e| if k == 0 { e.0 } else { e.1 } as i64).collect::<Vec<_>>());
+        let val: Vec<f64> = lower.iter().map(|e| e.2).collect();
+        let k =
+            TripletInput { row: &row, col: &col, val: &val, storage: feti_contact::solver::Storage::Lower };
+        problem.set_stiffness_triplets(body, n, k).map_err(told)?;
+        motions(&mut problem, folder, body, n)?;
+        starts.push(starts[body] + n);
+    }
+    let [bodies, unknowns] = [starts.len() - 1, starts[starts.len() - 1]];
+    if bodies == 0 {
+        return Err(format!("{}: there is no K1.mtx", folder.display()));
+    }
+    let of_length = |name: &str, length: usize| match text(folder, name)? {
+        Some(of) if of.numbers.len() != length => {
+            Err(of.said(&format!("{} numbers, not {length}", of.numbers.len())))
+        }
+        of => Ok(of),
+    };
+    if let Some(f) = of_length("f.txt", unknowns)? {
+        (0..bodies)
+            .try_for_each(|p| problem.set_load(p, &f.numbers[starts[p]..starts[p + 1]]))
+            .map_err(told)?;
+    }
+    if let Some(places) = of_length("dofs.txt", 5 * unknowns)? {
+        coordinates(&mut problem, &places, &starts).map_err(told)?;
+    }
+    for (matrix, rhs, kind) in KINDS {
+        let Some(rows) = text(folder, matrix)? else { continue };
+        let (ptr, dof, val) = rows.by_rows(unknowns)?;
+        let rows = ptr.len() - 1;
+        let gaps = of_length(rhs, rows)?.map_or(vec![0.0; rows], |of| of.numbers);
+        let rows = RowsInput { ptr: &ptr, body: None, dof: &dof, val: &val, rhs: Some(&gaps) };
+        problem.add_rows(kind, rows).map_err(told)?;
+        if let Some(inv_k) = of_length(&format!("inv_k_{rhs}"), gaps.len())? {
+            problem.set_compliance(kind, 0, &inv_k.numbers).map_err(told)?;
+        }
+    }
+    friction(&mut problem, folder, unknowns)?;
+    Ok(problem)
+}
+
+/// R of a body; without a file K is not singular.
+fn motions(problem: &mut Problem, folder: &Path, body: usize, n: usize) -> Result<(), String> {
+    let Some(r) = text(folder, &format!("R{}.mtx", body + 1))? else {
+        return problem.set_null_space(body, n, 0, &[], n, Modes::Exact).map_err(|error| error.to_string());
+    };
+    let path = folder.join(&r.name);
+    let comment = fs::read_to_string(path).unwrap_or_default().lines().nth(1).unwrap_or_default().to_owned();
+    let modes = match comment.trim_start_matches(['%', ' ']) {
+        "unknown" => return Ok(()),
+        "candidates" => Modes::Candidates,
+        "soft" => Modes::Soft,
+        _ => Modes::Exact,
+    };
+    let (rows, columns, entries) = r.triplets()?;
+    let mut basis = vec![0.0; rows * columns];
+    entries.iter().for_each(|(i, j, value)| basis[i + rows * j] = *value);
+    problem
+        .set_null_space(body, rows, columns, &basis, rows, modes)
+        .map_err(|error| format!("{}: {error}", r.name))
+}
+
+/// Node, direction, x, y, z of every unknown: direction 0 in bodies without coordinates.
+fn coordinates(problem: &mut Problem, places: &Text, starts: &[usize]) -> feti_contact::error::Result<()> {
+    let [node, dir] = [0, 1].map(|k| places.column(k, 5).iter().map(|x| *x as i32).collect::<Vec<_>>());
+    let xyz: Vec<f64> = places.numbers.chunks_exact(5).flat_map(|line| line[2..].to_vec()).collect();
+    for p in 0..starts.len() - 1 {
+        let own = starts[p]..starts[p + 1];
+        if dir[own.clone()].iter().any(|dir| *dir != 0) {
+            problem.set_coordinates(
+                p,
+                3,
+                &node[own.clone()],
+                &dir[own.clone()],
+                &xyz[3 * own.start..3 * own.end],
+                3,
+            )?;
+        }
+    }
+    Ok(())
+}
+
+/// friction.txt has a line for each node: contact row from 1 or 0, coefficient, bound, compliance, slips; T.mtx their rows.
+fn friction(problem: &mut Problem, folder: &Path, unknowns: usize) -> Result<(), String> {
+    let (Some(rows), Some(laws)) = (text(folder, "T.mtx")?, text(folder, "friction.txt")?) else {
+        return Ok(());
+    };
+    let told = |error: feti_contact::error::Error| format!("friction.txt: {error}");
+    let (ptr, dof, val) = rows.by_rows(unknowns)?;
+    let all = ptr.len() - 1;
+    // 4 numbers a node, and one for each row
+    let nodes = laws.numbers.len().saturating_sub(all) / 4;
+    if nodes == 0 || 4 * nodes + all != laws.numbers.len() || all % nodes != 0 {
+        return Err(
+            laws.said(&format!("a line has 4 numbers and a slip for each of the {all} rows of T.mtx"))
+        );
+    }
+    let dim = all / nodes;
+    let [normal, coefficient, bound, inv_kt] = [0, 1, 2, 3].map(|k| laws.column(k, 4 + dim));
+    let normal: Vec<i64> = normal.iter().map(|row| *row as i64 - 1).collect();
+    let s_old: Vec<f64> = laws.numbers.chunks_exact(4 + dim).flat_map(|line| line[4..].to_vec()).collect();
+    let rows = RowsInput { ptr: &ptr, body: None, dof: &dof, val: &val, rhs: None };
+    let input =
+        FrictionInput { dim, normal: &normal, rows, coefficient: Some(&coefficient), bound: Some(&bound) };
+    problem.add_friction(input).map_err(told)?;
+    problem.set_friction_compliance(0, &inv_kt).map_err(told)?;
+    problem.set_friction_reference(0, nodes, dim, &s_old).map_err(told)
+}
+
+/// u, lambda, mu, lambda_t of `solve --write` or of a reference; none without u. What is absent is 0.
+pub fn answer(folder: &Path, problem: &Problem) -> Result<Option<[Vec<f64>; 4]>, String> {
+    let sizes = problem.sizes();
+    let of = |name: &str, length: usize| {
+        let found = match text(folder, &format!("{name}.txt"))? {
+            None => text(folder, &format!("{name}_ref.txt"))?,
+            found => found,
+        };
+        Ok::<_, String>(found.map_or_else(|| vec![0.0; length], |found| found.numbers))
+    };
+    if !["u.txt", "u_ref.txt"].iter().any(|name| folder.join(name).exists()) {
+        return Ok(None);
+    }
+    Ok(Some([
+        of("u", sizes.dofs)?,
+        of("lambda", sizes.rows)?,
+        of("mu", sizes.equalities)?,
+        of("lambda_t", sizes.tangential)?,
+    ]))
+}
+
+pub fn write_answer(problem: &Problem, folder: &Path) -> Result<(), String> {
+    let all = [
+        ("u.txt", problem.displacements()),
+        ("lambda.txt", problem.multipliers(RowKind::Inequality)),
+        ("mu.txt", problem.multipliers(RowKind::Equality)),
+        ("lambda_t.txt", problem.multipliers(RowKind::Tangential)),
+    ];
+    for (name, values) in all {
+        put(folder, name, &lines(values.map_err(|error| error.to_string())?))?;
+    }
+    Ok(())
+}
+
+fn put(folder: &Path, name: &str, text: &str) -> Result<(), String> {
+    let path = folder.join(name);
+    let done = fs::create_dir_all(folder).and_then(|()| fs::write(&path, text));
+    done.map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn lines(values: &[f64]) -> String {
+    values.iter().fold(String::new(), |mut out, value| {
+        let _ = writeln!(out, "{value:e}");
+        out
+    })
+}
+
+/// The entries of a matrix, from 1.
+fn mtx(matrix: &Matrix, columns: usize, symmetry: &str) -> String {
+    let rows = matrix.rows();
+    let mut out =
+        format!("%%MatrixMarket matrix coordinate real {symmetry}\n{rows} {columns} {}\n", matrix.val.len());
+    for i in 0..rows {
+        for (j, value) in matrix.row(i) {
+            let _ = writeln!(out, "{} {} {value:e}", i + 1, j + 1);
+        }
+    }
+    out
+}
+
+/// Every file of the problem; numbers come back bit by bit.
+pub fn write(all: &Contents, folder: &Path) -> Result<(), String> {
+    let unknowns = all.starts[all.bodies.len()];
+    let (mut loads, mut places) = (Vec::new(), String::from("# node direction x y z\n"));
+    for (p, body) in all.bodies.iter().enumerate() {
+        put(folder, &format!("K{}.mtx", p + 1), &mtx(&body.k, body.n, "symmetric"))?;
+        let (said, columns, basis) = match &body.motions {
+            Some(of) => (MODES.get(of.modes).unwrap_or(&MODES[0]), of.columns, &of.basis[..]),
+            None => (&"unknown", 0, &[][..]),
+        };
+        if columns > 0 || body.motions.is_none() {
+            let head = format!("%%MatrixMarket matrix array real general\n% {said}\n{} {columns}\n", body.n);
+            put(folder, &format!("R{}.mtx", p + 1), &(head + &lines(basis)))?;
+        }
+        loads.extend_from_slice(&body.load);
+        for i in 0..body.n {
+            let _ = match &body.xyz {
+                Some((xyz, dir)) => {
+                    let [x, y, z] = [0, 1, 2].map(|k| xyz[3 * i + k]);
+                    writeln!(places, "{} {} {x:e} {y:e} {z:e}", i + 1, dir[i])
+                }
+                None => writeln!(places, "{} 0 0 0 0", i + 1),
+            };
+        }
+    }
+    put(folder, "f.txt", &lines(&loads))?;
+    if all.bodies.iter().any(|body| body.xyz.is_some()) {
+        put(folder, "dofs.txt", &places)?;
+    }
+    for ((matrix, rhs, _), rows) in KINDS.iter().zip(&all.rows) {
+        if rows.rhs.is_empty() {
+            continue;
+        }
+        put(folder, matrix, &mtx(&rows.matrix, unknowns, "general"))?;
+        put(folder, rhs, &lines(&rows.rhs))?;
+        if rows.inv_k.iter().any(|inv_k| *inv_k != 0.0) {
+            put(folder, &format!("inv_k_{rhs}"), &lines(&rows.inv_k))?;
+        }
+    }
+    if !all.options.is_empty() {
+        put(folder, "options.txt", &format!("{}\n", all.options))?;
+    }
+    if all.friction.normal.is_empty() {
+        return Ok(());
+    }
+    put(folder, "T.mtx", &mtx(&all.friction.matrix, unknowns, "general"))?;
+    let of = &all.friction;
+    let mut laws = String::from("# contact row, coefficient, bound, compliance, slips\n");
+    for k in 0..of.normal.len() {
+        let slips: Vec<_> =
+            of.s_old[of.dim * k..of.dim * (k + 1)].iter().map(|slip| format!("{slip:e}")).collect();
+        let law = [of.coefficient[k], of.bound[k], of.inv_kt[k]].map(|x| format!("{x:e}"));
+        let _ = writeln!(laws, "{} {} {}", of.normal[k] + 1, law.join(" "), slips.join(" "));
+    }
+    put(folder, "friction.txt", &laws)
+}

@@ -1,0 +1,196 @@
+//! What is suspicious in rows and bodies with coordinates: normals and gaps that do not fit the places of the unknowns.
+
+use crate::contents::{Contents, Rows};
+use crate::show::rows::groups;
+use crate::show::{listed, Suspicion};
+
+/// Digits that coordinates and normals agree to.
+const AGREE: f64 = 1e-6;
+/// Larger pairs are not compared row by row.
+const MOST: usize = 4000;
+/// Pairs whose points lie so many times the size of a body apart have no common unit of length.
+const APART: f64 = 20.0;
+
+/// A row with its normal on the first and on the second body, its places there, and the gap that the coordinates have.
+struct Seen {
+    row: usize,
+    normal: [[f64; 3]; 2],
+    place: [[f64; 3]; 2],
+    /// `-B x`, and the size of its terms.
+    gap: f64,
+    size: f64,
+}
+
+pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
+    let mut found = Vec::new();
+    let rows = &all.rows[0];
+    for (bodies, own) in groups(all, rows) {
+        let [a, .., b] = [&bodies[..], &bodies[..]].concat()[..] else { continue };
+        if bodies.len() > 2 || own.len() < 4 || bodies.iter().any(|p| all.bodies[*p].xyz.is_none()) {
+            continue;
+        }
+        let seen: Vec<Seen> = own.iter().map(|&i| see(all, rows, i, [a, b])).collect();
+        if bodies.len() == 2 && apart(all, &seen, [a, b], &mut found) {
+            continue;
+        }
+        if bodies.len() == 2 {
+            moved(&seen, &mut found);
+            gaps(rows, &seen, &mut found);
+        }
+        lengths(&seen, &mut found);
+        turned(&seen, &mut found);
+    }
+    found
+}
+
+fn see(all: &Contents, rows: &Rows, row: usize, bodies: [usize; 2]) -> Seen {
+    let mut seen = Seen { row, normal: [[0.0; 3]; 2], place: [[0.0; 3]; 2], gap: 0.0, size: 0.0 };
+    let mut weight = [0.0; 2];
+    for (j, value) in rows.matrix.row(row) {
+        let p = all.body_of(j);
+        let (i, side) = (j - all.starts[p], usize::from(p == bodies[1] && bodies[0] != bodies[1]));
+        let Some((xyz, dir)) = &all.bodies[p].xyz else { continue };
+        let Some(d) = usize::try_from(dir[i] - 1).ok().filter(|d| *d < 3) else { continue };
+        seen.normal[side][d] += value;
+        weight[side] += value.abs();
+        for k in 0..3 {
+            seen.place[side][k] += value.abs() * xyz[3 * i + k];
+        }
+        seen.gap -= value * xyz[3 * i + d];
+        seen.size += (value * xyz[3 * i + d]).abs();
+    }
+    for side in 0..2 {
+        seen.place[side].iter_mut().for_each(|x| *x /= weight[side]);
+    }
+    seen
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    dot(&d, &d).sqrt()
+}
+
+/// The rows that differ, if most of them agree.
+fn exceptions(seen: &[Seen], agrees: impl Fn(&Seen) -> bool) -> Vec<usize> {
+    let other: Vec<usize> = seen.iter().filter(|of| !agrees(of)).map(|of| of.row).collect();
+    if 3 * other.len() < seen.len() {
+        other
+    } else {
+        Vec::new()
+    }
+}
+
+fn tell(found: &mut Vec<Suspicion>, rows: &[usize], what: &str, remedy: &'static str) {
+    if !rows.is_empty() {
+        found.push(Suspicion::new(listed("contact row", rows), what, remedy));
+    }
+}
+
+/// The points of all rows lie far apart, compared to the size of the smaller body.
+fn apart(all: &Contents, seen: &[Seen], bodies: [usize; 2], found: &mut Vec<Suspicion>) -> bool {
+    let sizes = bodies.map(|p| {
+        let xyz = all.bodies[p].xyz.as_ref().map_or(&[][..], |(xyz, _)| xyz);
+        let [low, high] = xyz.chunks_exact(3).fold(
+            [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
+            |[mut low, mut high], x| {
+                (0..3).for_each(|k| (low[k], high[k]) = (low[k].min(x[k]), high[k].max(x[k])));
+                [low, high]
+            },
+        );
+        distance(&low, &high)
+    });
+    let smaller = usize::from(sizes[1] < sizes[0]);
+    let is_far = |of: &Seen| distance(&of.place[0], &of.place[1]) > APART * sizes[smaller];
+    if sizes[smaller] > 0.0 && seen.iter().all(is_far) {
+        let what = format!(
+            "its contact points lie over {APART} times its size away from those of body {}",
+            bodies[1 - smaller]
+        );
+        let remedy = "check the unit of length of its coordinates: mm against m";
+        found.push(Suspicion::new(format!("body {}", bodies[smaller]), what, remedy));
+        return true;
+    }
+    false
+}
+
+/// If both bodies move together, no gap changes.
+fn moved(seen: &[Seen], found: &mut Vec<Suspicion>) {
+    let sum = |of: &Seen| distance(&of.normal[0], &of.normal[1].map(|x| -x));
+    let rows = exceptions(seen, |of| sum(of) <= AGREE * dot(&of.normal[0], &of.normal[0]).sqrt());
+    let what = "if both bodies move together, its gap changes: its entries do not sum to 0 in each direction";
+    tell(
+        found,
+        &rows,
+        what,
+        "the weights of a face sum to 1, and its unknowns are those of the direction of the normal",
+    );
+}
+
+/// The gap is the distance of the two places along the normal.
+fn gaps(rows: &Rows, seen: &[Seen], found: &mut Vec<Suspicion>) {
+    let fits = |of: &Seen, sign: f64| (rows.rhs[of.row] - sign * of.gap).abs() <= AGREE * of.size;
+    let finite = |of: &Seen| rows.rhs[of.row].is_finite();
+    let most = seen.iter().filter(|of| finite(of)).map(|of| rows.rhs[of.row].abs()).fold(0.0, f64::max);
+    let telling: Vec<&Seen> =
+        seen.iter().filter(|of| finite(of) && rows.rhs[of.row].abs() > 1e-3 * most).collect();
+    if telling.len() > 2 && telling.iter().all(|of| fits(of, -1.0) && !fits(of, 1.0)) {
+        let of: Vec<usize> = seen.iter().map(|of| of.row).collect();
+        return tell(
+            found,
+            &of,
+            "its gap has the other sign than the distance along its normal",
+            "turn the normal, or the gap: c = n'(x_foot - x_s)",
+        );
+    }
+    let rows = exceptions(seen, |of| !finite(of) || fits(of, 1.0));
+    tell(
+        found,
+        &rows,
+        "its gap is not the distance of its points along the normal, as it is in the other rows",
+        "check normal and gap: c = n'(x_foot - x_s)",
+    );
+}
+
+/// A normal has the length of the others if these have the length 1.
+fn lengths(seen: &[Seen], found: &mut Vec<Suspicion>) {
+    let is_unit = |of: &Seen| (dot(&of.normal[0], &of.normal[0]).sqrt() - 1.0).abs() <= AGREE;
+    tell(
+        found,
+        &exceptions(seen, is_unit),
+        "its normal is no unit vector, as those of the other rows are",
+        "divide the normal by its length, or the multiplier is no force",
+    );
+}
+
+/// A normal that neither of the two next rows has, which agree.
+fn turned(seen: &[Seen], found: &mut Vec<Suspicion>) {
+    if seen.len() > MOST {
+        return;
+    }
+    let cosine = |a: &Seen, b: &Seen| {
+        let (a, b) = (&a.normal[0], &b.normal[0]);
+        dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
+    };
+    let rows: Vec<usize> = seen
+        .iter()
+        .filter(|of| {
+            let mut next: Vec<&Seen> = seen.iter().filter(|other| other.row != of.row).collect();
+            next.sort_by(|a, b| {
+                distance(&a.place[0], &of.place[0]).total_cmp(&distance(&b.place[0], &of.place[0]))
+            });
+            let [a, b, ..] = next[..] else { return false };
+            cosine(a, b) > 0.9 && cosine(of, a) < 0.3 && cosine(of, b) < 0.3
+        })
+        .map(|of| of.row)
+        .collect();
+    tell(
+        found,
+        &rows,
+        "its normal points elsewhere than those of the rows beside it",
+        "turn the normal, or check the directions of its unknowns",
+    );
+}

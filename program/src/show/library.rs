@@ -1,0 +1,74 @@
+//! What the library itself finds: errors, findings, warnings and notes of its log.
+
+use feti_contact::solver::{LogLevel, Problem};
+
+use crate::show::{listed, Suspicion};
+use crate::{end, live};
+
+/// Parts of lines of the log that are faults of the input, and what to do; other notes are facts.
+const REMEDIES: [(&str, &str); 11] = [
+    ("coefficient of friction", "give the coefficient as a number: 0.3, not 30 per cent"),
+    ("no stiffness, no row and no load", "leave the unknown out, or give the elements that hold it"),
+    ("multiple of its contact row", "give tangential rows that are perpendicular to the normal"),
+    ("length of its shortest", "multiply the rows of a node by the same number"),
+    ("because the row has no entry", "leave the row out, or give its entries"),
+    (
+        "the row constrains nothing",
+        "check which unknowns the row joins: a row between the same unknowns cancels",
+    ),
+    ("of those of all other rows", "multiply the row by a number, or leave it out"),
+    ("no body has a load", "give loads, gaps or prescribed motions"),
+    ("are left open", "support the bodies, or give rows to all pairs that may touch"),
+    ("searched its null space", "check coordinates and directions of the unknowns of this body"),
+    ("digits", "write K with all digits of double precision (17), or give coordinates"),
+];
+
+pub fn suspicions(problem: &mut Problem) -> Vec<Suspicion> {
+    let book = live::log(problem, LogLevel::Phase, None);
+    live::bar(problem);
+    let solved = problem.solve();
+    live::end_bar();
+    let mut found = Vec::new();
+    let (name, status) = end::of(&solved.as_ref().map(|report| report.outcome).map_err(|error| error.kind));
+    if status != end::OK {
+        let why = solved.as_ref().err().cloned().or_else(|| problem.shortfall());
+        let (place, what) = why.map_or((String::new(), String::new()), |error| {
+            let text = error.to_string();
+            let place = error.place.to_string();
+            (place.trim_end_matches(": ").to_owned(), text[place.len()..].to_owned())
+        });
+        let place = if place.is_empty() { "the problem".to_owned() } else { place };
+        found.push(Suspicion::new(place, format!("{name}: {what}"), end::cure(name)));
+    }
+    let findings = problem.findings().ok();
+    if let Some(of) = findings.filter(|of| !of.untouched.is_empty()) {
+        let remedy = "give rows to the pairs of this body, or leave it out";
+        found.push(Suspicion::new(listed("body", &of.untouched), "no row touches it", remedy));
+    }
+    if let Some(of) = findings.filter(|of| of.contradicting() > 0) {
+        for kind in [feti_contact::solver::RowKind::Inequality, feti_contact::solver::RowKind::Equality] {
+            let rows: Vec<usize> = of.rows(kind).map(|(row, _)| row).collect();
+            if !rows.is_empty() {
+                let what = "contradicts the other rows of the proof";
+                found.push(Suspicion::new(
+                    listed(kind.name(), &rows),
+                    what,
+                    end::cure("FETI_GAPS_CONTRADICT"),
+                ));
+            }
+        }
+    }
+    for line in live::notes(&book) {
+        let is_warning = line.starts_with("warning: ");
+        let known = REMEDIES.iter().find(|(part, _)| line.contains(part));
+        // without a load, gaps or prescribed motions still do something
+        if known.is_none() && !is_warning || line == "note: no body has a load" {
+            continue;
+        }
+        let text = line.split_once(": ").map_or(&*line, |(_, text)| text);
+        let (place, what) = text.split_once(": ").unwrap_or(("the problem", text));
+        let remedy = known.map_or("see the text", |(_, remedy)| remedy);
+        found.push(Suspicion::new(place.to_owned(), what, remedy));
+    }
+    found
+}

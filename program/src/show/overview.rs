@@ -1,0 +1,90 @@
+//! What a problem has: bodies, rows, friction, options.
+
+use feti_contact::solver::{Origin, Problem};
+
+use crate::contents::{Contents, Rows, MODES};
+use crate::show::{bodies, rows};
+use crate::table::{row, table};
+
+pub fn text(problem: &Problem, all: &Contents) -> String {
+    let sizes = problem.sizes();
+    let mut out = format!(
+        "{} bodies, {} unknowns, {} contact rows, {} equality rows, {} nodes with friction\noptions: {}\n\nbodies\n",
+        sizes.bodies, sizes.dofs, sizes.rows, sizes.equalities, sizes.nodes,
+        if all.options.is_empty() { "defaults" } else { &all.options }
+    );
+    out += &of_bodies(problem, all);
+    for (own, kind) in all.rows.iter().zip(["contact rows", "equality rows"]) {
+        if !own.rhs.is_empty() {
+            out += &format!("\n{kind}\n{}", of_rows(all, own));
+        }
+    }
+    let friction = &all.friction;
+    if !friction.normal.is_empty() {
+        let [low, high] = range(&friction.coefficient);
+        let bounds = friction.bound.iter().filter(|bound| **bound > 0.0).count();
+        out += &format!(
+            "\nfriction: {} nodes with {} tangential rows each, coefficients {low:.3} to {high:.3}, {bounds} with a bound of their own\n",
+            friction.normal.len(), friction.dim
+        );
+    }
+    out
+}
+
+fn range(values: &[f64]) -> [f64; 2] {
+    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
+}
+
+fn of_bodies(problem: &Problem, all: &Contents) -> String {
+    let head =
+        ["body", "unknowns", "entries of K", "digits", "K_ii", "motions declared", "found", "K R", "load"];
+    let mut lines = vec![row(head)];
+    for (p, body) in all.bodies.iter().enumerate() {
+        let [low, high] = range(&body.diagonal());
+        let declared = match (&body.motions, &body.xyz) {
+            (Some(of), _) => format!("{} {}", of.columns, MODES.get(of.modes).unwrap_or(&"")),
+            (None, Some(_)) => format!("coordinates, {}", MODES.get(body.xyz_modes).unwrap_or(&"")),
+            (None, None) => "none".to_owned(),
+        };
+        let facts = problem.body_facts(p).ok();
+        let found = facts
+            .as_ref()
+            .and_then(|of| of.factors.as_ref())
+            .map_or("?".to_owned(), |of| of.null_space.to_string());
+        let searched = facts.is_some_and(|of| of.origin == Origin::Found && body.xyz.is_some());
+        let pieces = if body.pieces > 1 { format!(" in {} pieces", body.pieces) } else { String::new() };
+        lines.push(vec![
+            p.to_string(),
+            format!("{}{pieces}", body.n),
+            body.k.val.len().to_string(),
+            bodies::digits(body).to_string(),
+            format!("{low:.1e} to {high:.1e}"),
+            declared,
+            found + if searched { " in K" } else { "" },
+            format!("{:.0e}", bodies::resisted(body)),
+            format!("{:.2e}", body.load.iter().map(|f| f * f).sum::<f64>().sqrt()),
+        ]);
+    }
+    table(&lines)
+}
+
+fn of_rows(all: &Contents, own: &Rows) -> String {
+    let mut lines =
+        vec![row(["bodies", "rows", "first", "entries", "largest entry", "right-hand side", "compliant"])];
+    for (bodies, of) in rows::groups(all, own) {
+        let entries = || of.iter().flat_map(|&i| own.matrix.row(i));
+        let most = |i: usize| own.matrix.row(i).fold(0.0f64, |most, (_, value)| most.max(value.abs()));
+        let [low, high] = range(&of.iter().map(|&i| most(i)).collect::<Vec<_>>());
+        let [least, largest] = range(&of.iter().map(|&i| own.rhs[i]).collect::<Vec<_>>());
+        lines.push(vec![
+            bodies.iter().map(usize::to_string).collect::<Vec<_>>().join(", "),
+            of.len().to_string(),
+            of[0].to_string(),
+            entries().count().to_string(),
+            format!("{low:.1e} to {high:.1e}"),
+            format!("{least:.2e} to {largest:.2e}"),
+            of.iter().filter(|&&i| own.inv_k[i] > 0.0).count().to_string(),
+        ]);
+    }
+    table(&lines)
+}

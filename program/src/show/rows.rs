@@ -1,0 +1,149 @@
+//! What is suspicious in rows by their entries alone: gaps of one sign, lengths, rows given twice or nearly, sides that are missing.
+
+use std::collections::BTreeMap;
+
+use crate::contents::{Contents, Rows};
+use crate::show::{listed, median, Suspicion};
+
+/// Lengths of the rows of a pair differ by the areas of nodes at most.
+const LENGTH: f64 = 1e4;
+/// Rows whose directions differ by less than this, and more than rounding, are one row, computed twice.
+const NEARLY: f64 = 1e-6;
+const ROUNDING: f64 = 1e-14;
+
+const KINDS: [&str; 2] = ["contact row", "equality row"];
+
+/// The rows between the same bodies.
+pub fn groups(all: &Contents, rows: &Rows) -> BTreeMap<Vec<usize>, Vec<usize>> {
+    let mut groups = BTreeMap::<Vec<usize>, Vec<usize>>::new();
+    for i in 0..rows.rhs.len() {
+        let touched = rows.matrix.row(i).filter(|(_, value)| *value != 0.0);
+        let mut bodies: Vec<usize> = touched.map(|(j, _)| all.body_of(j)).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        groups.entry(bodies).or_default().push(i);
+    }
+    groups
+}
+
+pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
+    let mut found = Vec::new();
+    for (rows, kind) in all.rows.iter().zip(KINDS) {
+        let groups = groups(all, rows);
+        for (bodies, own) in groups.iter().filter(|(bodies, own)| !bodies.is_empty() && own.len() > 1) {
+            let between = listed(if bodies.len() > 1 { "bodies" } else { "body" }, bodies);
+            if kind == KINDS[0] {
+                found.extend(gaps(rows, own, &between));
+            }
+            lengths(rows, own, kind, &mut found);
+        }
+        twice(rows, kind, &mut found);
+        if kind == KINDS[0] {
+            one_sided(rows, &groups, &mut found);
+        }
+    }
+    found
+}
+
+/// All gaps of a pair below 0, or all +infinity.
+fn gaps(rows: &Rows, own: &[usize], between: &str) -> Option<Suspicion> {
+    let all = |is: fn(f64) -> bool| own.iter().all(|&i| is(rows.rhs[i]));
+    if all(|gap| gap < 0.0) {
+        let remedy = "check the sign of the gaps, c = n'(x_foot - x_s), and of the normals; nothing to do for a press fit";
+        return Some(Suspicion::new(between.to_owned(), "all gaps between them are negative", remedy));
+    }
+    let what = "all gaps between them are +infinity: no row can ever close";
+    all(f64::is_infinite)
+        .then(|| Suspicion::new(between.to_owned(), what, "give the gaps of the pairs that may close"))
+}
+
+fn norm(rows: &Rows, i: usize) -> f64 {
+    rows.matrix.row(i).map(|(_, value)| value * value).sum::<f64>().sqrt()
+}
+
+/// A row far longer or shorter than the others of its pair.
+fn lengths(rows: &Rows, own: &[usize], kind: &str, found: &mut Vec<Suspicion>) {
+    let lengths: Vec<f64> = own.iter().map(|&i| norm(rows, i)).collect();
+    let Some(middle) = median(lengths.clone()) else { return };
+    let far = |length: f64| length > 0.0 && (length > LENGTH * middle || length * LENGTH < middle);
+    let far: Vec<_> = own.iter().zip(lengths).filter(|(_, length)| far(*length)).collect();
+    if let Some((_, length)) = far.first() {
+        let rows: Vec<usize> = far.iter().map(|(i, _)| **i).collect();
+        let what = format!(
+            "its entries are {:.0e} times those of the other rows between the same bodies",
+            length / middle
+        );
+        found.push(Suspicion::new(
+            listed(kind, &rows),
+            what,
+            "check the normal: a unit vector, times the area at most",
+        ));
+    }
+}
+
+/// Rows with the same unknowns whose directions agree, exactly or nearly, and whose gaps agree, too.
+fn twice(rows: &Rows, kind: &str, found: &mut Vec<Suspicion>) {
+    let mut alike = BTreeMap::<Vec<usize>, Vec<(usize, Vec<f64>)>>::new();
+    let (mut same, mut nearly) = (Vec::new(), Vec::new());
+    for i in 0..rows.rhs.len() {
+        let length = norm(rows, i);
+        let mut entries: Vec<_> = rows.matrix.row(i).filter(|(_, value)| *value != 0.0).collect();
+        if entries.is_empty() {
+            continue;
+        }
+        entries.sort_by_key(|(j, _)| *j);
+        let direction: Vec<f64> = entries.iter().map(|(_, value)| value / length).collect();
+        let gap = rows.rhs[i] / length;
+        let others = alike.entry(entries.iter().map(|(j, _)| *j).collect()).or_default();
+        for (k, other) in others.iter() {
+            let away = direction.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let gap_of_other = rows.rhs[*k] / norm(rows, *k);
+            if away <= ROUNDING && gap_of_other == gap {
+                same.push((i, *k));
+            } else if away > ROUNDING && away <= NEARLY {
+                nearly.push((i, *k));
+            }
+        }
+        others.push((i, direction));
+    }
+    if let Some((row, first)) = same.first() {
+        let rows: Vec<usize> = same.iter().map(|(row, _)| *row).collect();
+        let what = format!("row {row} is row {first} given twice: the two share one force");
+        found.push(Suspicion::new(listed(kind, &rows), what, "give each node and face once"));
+    }
+    if let Some((row, first)) = nearly.first() {
+        let rows: Vec<usize> = nearly.iter().map(|(row, _)| *row).collect();
+        let what =
+            format!("row {row} is nearly parallel to row {first}: forces between the two are not certain");
+        found.push(Suspicion::new(
+            listed(kind, &rows),
+            what,
+            "give one of the two, or compute both normals in the same way",
+        ));
+    }
+}
+
+/// Few rows of one body among the many that join it to another one.
+fn one_sided(rows: &Rows, groups: &BTreeMap<Vec<usize>, Vec<usize>>, found: &mut Vec<Suspicion>) {
+    let touch = |i: usize| {
+        groups.iter().find(|(_, own)| own.binary_search(&i).is_ok()).map(|(bodies, _)| &bodies[..])
+    };
+    for (bodies, own) in groups.iter().filter(|(bodies, _)| bodies.len() == 1) {
+        let of_pair = |i: usize| touch(i).filter(|of| of.len() == 2 && of.contains(&bodies[0]));
+        let lost: Vec<usize> = own
+            .iter()
+            .copied()
+            .filter(|&i| {
+                let before = i.checked_sub(1).and_then(of_pair);
+                before.is_some() && before == Some(i + 1).filter(|i| *i < rows.rhs.len()).and_then(of_pair)
+            })
+            .filter(|&i| {
+                of_pair(i + 1).and_then(|of| groups.get(of)).is_some_and(|pair| pair.len() >= 4 * own.len())
+            })
+            .collect();
+        if !lost.is_empty() {
+            let what = format!("it touches body {} alone, the rows around it a second body", bodies[0]);
+            found.push(Suspicion::new(listed(KINDS[0], &lost), what, "give the entries of the face, too"));
+        }
+    }
+}
