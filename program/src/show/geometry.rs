@@ -106,12 +106,10 @@ fn apart(all: &Contents, seen: &[Seen], bodies: [usize; 2], found: &mut Vec<Susp
     let smaller = usize::from(sizes[1] < sizes[0]);
     let is_far = |of: &Seen| distance(&of.place[0], &of.place[1]) > APART * sizes[smaller];
     if sizes[smaller] > 0.0 && seen.iter().all(is_far) {
-        let what = format!(
-            "its contact points lie over {APART} times its size away from those of body {}",
-            bodies[1 - smaller]
-        );
-        let remedy = "check the unit of length of its coordinates: mm against m";
-        found.push(Suspicion::new(format!("body {}", bodies[smaller]), what, remedy));
+        let of = bodies[smaller];
+        let what = format!("their contact points lie over {APART} times the size of body {of} apart");
+        let place = format!("bodies {} and {}", bodies[0], bodies[1]);
+        found.push(Suspicion::new(place, what, "check the units of coordinates: mm against m"));
         return true;
     }
     false

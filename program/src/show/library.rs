@@ -5,8 +5,11 @@ use feti_contact::solver::{LogLevel, Problem};
 use crate::show::{listed, Suspicion};
 use crate::{end, live};
 
+/// Parts of warnings that say what the answer is, and are no faults of the input.
+const FACTS: [&str; 2] = ["no body has a load", "are left open"];
+
 /// Parts of lines of the log that are faults of the input, and what to do; other notes are facts.
-const REMEDIES: [(&str, &str); 11] = [
+const REMEDIES: [(&str, &str); 10] = [
     ("coefficient of friction", "give the coefficient as a number: 0.3, not 30 per cent"),
     ("no stiffness, no row and no load", "leave the unknown out, or give the elements that hold it"),
     ("multiple of its contact row", "give tangential rows that are perpendicular to the normal"),
@@ -17,8 +20,7 @@ const REMEDIES: [(&str, &str); 11] = [
         "check which unknowns the row joins: a row between the same unknowns cancels",
     ),
     ("of those of all other rows", "multiply the row by a number, or leave it out"),
-    ("no body has a load", "give loads, gaps or prescribed motions"),
-    ("are left open", "support the bodies, or give rows to all pairs that may touch"),
+    ("neither gaps nor right-hand sides move", "give loads, gaps or prescribed motions"),
     ("searched its null space", "check coordinates and directions of the unknowns of this body"),
     ("digits", "write K with all digits of double precision (17), or give coordinates"),
 ];
@@ -61,14 +63,31 @@ pub fn suspicions(problem: &mut Problem) -> Vec<Suspicion> {
     for line in live::notes(&book) {
         let is_warning = line.starts_with("warning: ");
         let known = REMEDIES.iter().find(|(part, _)| line.contains(part));
-        // without a load, gaps or prescribed motions still do something
-        if known.is_none() && !is_warning || line == "note: no body has a load" {
+        let is_fact = known.is_none() && FACTS.iter().any(|part| line.contains(part));
+        if known.is_none() && !is_warning || is_fact {
             continue;
         }
         let text = line.split_once(": ").map_or(&*line, |(_, text)| text);
-        let (place, what) = text.split_once(": ").unwrap_or(("the problem", text));
+        let (place, what) = match text.split_once(": ") {
+            Some((place, what)) => (place.to_owned(), what),
+            None => (named(text).unwrap_or_else(|| "the problem".to_owned()), text),
+        };
         let remedy = known.map_or("see the text", |(_, remedy)| remedy);
-        found.push(Suspicion::new(place.to_owned(), what, remedy));
+        found.push(Suspicion::new(place, what, remedy));
     }
     found
+}
+
+/// The first body, node or row that a text names.
+fn named(text: &str) -> Option<String> {
+    let words: Vec<&str> = text.split(' ').collect();
+    let at = words
+        .windows(2)
+        .position(|pair| ["body", "node", "row"].contains(&pair[0]) && pair[1].parse::<usize>().is_ok())?;
+    let kind = at
+        .checked_sub(1)
+        .map(|k| words[k])
+        .filter(|_| words[at] == "row")
+        .map_or(String::new(), |kind| format!("{kind} "));
+    Some(format!("{kind}{} {}", words[at], words[at + 1]))
 }
