@@ -27,11 +27,11 @@ macro_rules! names {
 }
 
 names! {
-    /// [`Give`](super::Give): keep a body. Answer: nothing.
+    /// `Give`: keep a body. Answer: nothing.
     Give,
-    /// [`GiveLoad`](super::GiveLoad): keep the load of a body. Answer: nothing.
+    /// `GiveLoad`: keep the load of a body. Answer: nothing.
     GiveLoad,
-    /// [`Enter`](super::Enter): keep a body in an island. Answer: `Entered`.
+    /// `Enter`: keep a body in an island. Answer: `Entered`.
     Enter,
     /// `PlanBody`: keep the plan of K+ of a body. Answer: `Planned`.
     Plan,
@@ -41,17 +41,17 @@ names! {
     Analyse,
     /// `Factorise`: keep a K+. Answer: `Made`.
     Factorise,
-    /// [`Boundary`]: keep S_b. Answer: nothing.
+    /// `Boundary`: keep S_b. Answer: nothing.
     Boundary,
-    /// [`Multiply`]. Answer: `B K+ B' x`, or `S_b x`.
+    /// `Multiply`. Answer: `B K+ B' x`, or `S_b x`.
     Multiply,
-    /// [`Entries`]. Answer: the entries of `B K+ B'` in these rows and columns.
+    /// `Entries`. Answer: the entries of `B K+ B'` in these rows and columns.
     Entries,
-    /// [`Solve`]. Answer: `K+ x`.
+    /// `Solve`. Answer: `K+ x`.
     Solve,
-    /// [`NullSpace`]. Answer: `R_p`.
+    /// `NullSpace`. Answer: `R_p`.
     NullSpace,
-    /// [`Join`](super::Join): keep the part of a body in the dual problem of its island, and its dual operator. Answer: its part of G. The
+    /// `Join`: keep the part of a body in the dual problem of its island, and its dual operator. Answer: its part of G. The
     /// names below are questions about a body of an island (`local::Question`).
     Join,
     Put,
