@@ -21,8 +21,8 @@
 #                alone, without them (a minute)
 # make hosts     CalculiX with this library's contact against its own on its own decks (a quarter of an hour), written to docs/hosts/calculix.md
 # make hosts-python  scikit-fem, SfePy and GetFEM as hosts, each against a known answer (seconds; the first time 1.2 GB in build/hosts)
-# make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html, which Chromium
-#                opens page by page without network (some minutes)
+# make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html, with a search
+#                over all of them; Chromium opens page by page without network (some minutes, and tells of which part)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
 # make man       the manual pages alone                                make deb        Debian packages in build/deb (some minutes)
 # make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
@@ -267,7 +267,6 @@ overhead: setup stage data build/ctest/CMakeCache.txt
 DOCS   := build/docs
 TOOLS  := build/tools
 MDBOOK := 0.5.4
-CHECK_LINKS := python3 tools/docs/check_links.py
 $(TOOLS)/mdbook-$(MDBOOK):
 	CARGO_TARGET_DIR=$(TOOLS)/target CARGO_PROFILE_DEV_OPT_LEVEL=0 CARGO_PROFILE_DEV_DEBUG=0 $(CARGO) install mdbook \
 	    --version $(MDBOOK) --locked --no-default-features --features search --debug --force --root $(TOOLS)
@@ -288,25 +287,7 @@ man:
 	rm -rf $(DOCS)/reference
 
 docs: $(TOOLS)/mdbook-$(MDBOOK) $(TOOLS)/ford/installed
-	rm -rf $(DOCS)
-	$(CARGO) run --release --locked --quiet -p feti-bindgen -- --pages $(DOCS)/reference
-	$(CARGO) run --release --locked --quiet -p feti-reference -- $(DOCS)/reference
-	mv $(DOCS)/reference/man $(DOCS)/man
-	python3 tools/docs/stage.py $(DOCS)/reference $(DOCS)/source
-	cp docs/book/book.toml docs/book/book.css docs/book/index.html $(DOCS)
-	$(TOOLS)/bin/mdbook build $(DOCS)
-	python3 tools/docs/fortran.py sources $(DOCS)/fortran_sources
-	$(TOOLS)/ford/bin/ford --quiet docs/book/ford.md
-	python3 tools/docs/fortran.py pages $(DOCS)/fortran
-	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --locked
-	cp -R $(RELEASE)/../doc $(DOCS)/rust
-	echo '<meta http-equiv="refresh" content="0; url=feti_contact/index.html">' > $(DOCS)/rust/index.html
-	$(CHECK_LINKS) markdown .
-	$(CHECK_LINKS) html $(DOCS)
-	! grep -rlF '|---' --include='*.html' $(DOCS)/book # a table that is none
-	@tools/setup.sh chromium
-	python3 tests/docs/browser.py chromium
-	python3 tools/docs/browser.py $(DOCS) chromium
+	@CARGO=$(CARGO) tools/docs/build.sh $(TOOLS) release $(RELEASE)/..
 
 # ---- measurements
 counts:

@@ -3,9 +3,9 @@
 
 The chapters are those of docs/book/SUMMARY.md, read where they are; the reference pages are those of the folder PAGES
 (feti-bindgen --pages, feti-reference). In OUT a chapter lies where docs/ has it, README.md as index.md, the reference
-below reference/. Links to chapters and pictures follow; a link to another file of the repository becomes its text; the
-name of a function between ticks becomes a link to its page. Exit status 1 where a chapter is missing or a document is
-none."""
+below reference/, a page for each source of the examples below examples_c/ and examples_fortran/. Links to chapters, examples
+and pictures follow; a link to another file of the repository becomes its text; the name of a function between ticks becomes
+a link to its page. Exit status 1 where a chapter is missing or a document is none."""
 
 import os
 import re
@@ -19,8 +19,14 @@ ROOT = Path(__file__).resolve().parents[2]
 SUMMARY = ROOT / "docs/book/SUMMARY.md"
 ENTRY = re.compile(r"(?P<before>\s*- \[.*\]\()(?P<target>[^)]+)(?P<after>\).*)")
 PICTURES = {".svg", ".png"}
-# The script that colours programs in the book does not know these languages and says so on the console.
+# The script that colours programs in the book does not know these languages and says so on the console; docs/book/search.js
+# colours Fortran.
 UNCOLOURED = re.compile(r"^( *```)(fortran|cmake)$", re.M)
+EXAMPLES = {"examples_c": "C", "examples_fortran": "Fortran"}
+LANGUAGES = {".c": "c", ".h": "c", ".f90": "fortran", ".f": "fortran"}
+# Parts of the documents that are not made from documents: where a link to their sources leads, from the book.
+PARTS = {ROOT / "include/feti_contact.h": "reference/functions.md", ROOT / "include/fortran": "../fortran/module/feti_contact.html",
+         ROOT / "src/lib.rs": "../rust/feti_contact/index.html"}
 REFERENCE = ["functions", "types", "options", "statuses"]
 
 
@@ -46,12 +52,18 @@ def faults(listed):
     ]
 
 
+def examples():
+    """The sources of the examples, twins one after the other, then what they share."""
+    found = [path for folder in EXAMPLES for path in (ROOT / folder).iterdir() if path.suffix in LANGUAGES]
+    return sorted(found, key=lambda path: (not path.stem[0].isdigit(), path.stem, path.parent.name))
+
+
 class Stage:
     """Writes the chapters, given those of the book and the functions that have a page."""
 
     def __init__(self, out, listed, functions):
         self.out, self.functions = out, functions
-        self.places = {path: staged(path) for path in listed}
+        self.places = {path: staged(path) for path in listed} | {path: f"{staged(path)}.md" for path in examples()} | PARTS
 
     def chapter(self, path):
         here = Path(self.places[path]).parent
@@ -64,6 +76,14 @@ class Stage:
             return f"[{whole}]({os.path.relpath(page, here)})" if page else whole
 
         self.write(self.places[path], markdown.rewrite(path.read_text(encoding="utf-8"), link, code))
+
+    def example(self, path):
+        text = path.read_text(encoding="utf-8")
+        twins = [twin for twin in examples() if twin.stem == path.stem and twin.parent != path.parent]
+        beside = [f"[the same in {EXAMPLES[twin.parent.name]}](../{self.places[twin]})" for twin in twins]
+        calls = [f"[`{name}`](../{page})" for name, page in self.functions.items() if re.search(rf"\b{name}\b", text)]
+        head = ", ".join(["[All examples](../examples.md)", *beside]) + ("\n\nCalls " + ", ".join(calls) if calls else "")
+        self.write(self.places[path], f"# {path.name}\n\n{head}\n\n```{LANGUAGES[path.suffix]}\n{text}```\n")
 
     def link(self, path, here, whole, opened, target, closed):
         name, mark, anchor = target.partition("#")
@@ -87,6 +107,8 @@ class Stage:
                 file = (SUMMARY.parent / entry.group("target")).resolve()
                 line = entry.group("before") + self.places[file] + entry.group("after")
             lines.append(line)
+            if entry and file.name == "examples.md":
+                lines += [f"  - [{path.name}]({self.places[path]})" for path in examples()]
         lines += ["", "# Reference", ""]
         for name in REFERENCE:
             lines.append(f"- [{title(pages / f'{name}.md')}](reference/{name}.md)")
@@ -97,7 +119,7 @@ class Stage:
     def write(self, place, text):
         file = self.out / place
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(UNCOLOURED.sub(r"\1text", text), encoding="utf-8")
+        file.write_text(UNCOLOURED.sub(r"\1text,\2", text), encoding="utf-8")
 
 
 def in_order(pages):
@@ -120,10 +142,12 @@ def main(pages, out):
     shutil.copytree(pages, out / "reference", ignore=shutil.ignore_patterns("man"))
     names = in_order(pages)
     for page in (out / "reference").glob("*.md"):
-        page.write_text(UNCOLOURED.sub(r"\1text", page.read_text(encoding="utf-8")), encoding="utf-8")
+        page.write_text(UNCOLOURED.sub(r"\1text,\2", page.read_text(encoding="utf-8")), encoding="utf-8")
     stage = Stage(out, listed, {name: f"reference/{name}.md" for name in names})
     for path in listed:
         stage.chapter(path)
+    for path in examples():
+        stage.example(path)
     stage.summary(pages)
     return 0
 
