@@ -2,16 +2,16 @@
 (() => {
     const place = document.getElementById("names");
     if (!place) return;
-    place.innerHTML = `<input type="search" placeholder="Function, module, status, option, heading, example ..." aria-label="Search all parts"
+    place.innerHTML = `<input type="search" placeholder="Function, option, status, heading ..." aria-label="Search all parts"
         autocomplete="off"><ol></ol>`;
     const [input, list] = place.children;
     let names = null;
 
-    // All words have to occur; a name that begins with the text comes first, then one that contains it, then the rest.
-    function rank([name], words, whole) {
+    // All words have to occur; the name itself comes first, then names that begin with the text, that contain it, and the rest.
+    function rank([name, kind], words, whole) {
         const text = name.toLowerCase();
         if (!words.every((word) => text.includes(word))) return 0;
-        return text.startsWith(whole) ? 3 : text.includes(whole) ? 2 : 1;
+        return 2 * (1 + text.includes(whole) + text.startsWith(whole) + (text === whole)) + (kind === "page");
     }
 
     function show() {
@@ -36,12 +36,15 @@
         script.src = "names.js";
         script.onload = () => { names = window.NAMES; show(); };
         document.head.append(script);
-    }, );
+    });
     input.addEventListener("keydown", (event) => {
         event.stopPropagation(); // the book has keys of its own
         if (event.key === "Enter" && list.firstChild) list.querySelector("a").click();
     });
 })();
+
+// Long names in tables break after an underscore.
+document.querySelectorAll("td code").forEach((code) => { code.innerHTML = code.innerHTML.replaceAll("_", "_<wbr>"); });
 
 // Fortran, which the script that colours programs in the book does not know.
 if (window.hljs) {

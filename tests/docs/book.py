@@ -30,12 +30,23 @@ def every_link_of_the_book_leads_somewhere():
         listed = "# Title of functions\n\n[feti_solve](feti_solve.md) [feti_gaps](feti_gaps.md)\n"
         (pages / "functions.md").write_text(listed, encoding="utf-8")
         assert stage.main(pages, book) == 0
-        errors, _ = check_links.check(book, sorted(book.rglob("*.md")))
+        for part in ("fortran/module/feti_contact.html", "rust/feti_contact/index.html"):
+            (book.parent / part).parent.mkdir(parents=True)
+            (book.parent / part).touch()
+        errors, _ = check_links.check(book.parent, sorted(book.rglob("*.md")))
         assert not errors, errors
         summary = (book / "SUMMARY.md").read_text(encoding="utf-8")
-        assert "- [Start](index.md)" in summary and "  - [feti_solve](reference/feti_solve.md)" in summary
+        assert "- [Where to begin](start.md)" in summary and "  - [feti_solve](reference/feti_solve.md)" in summary
         assert summary.index("feti_solve.md") < summary.index("feti_gaps.md"), "the order of functions.md"
         assert "- [Title of statuses](reference/statuses.md)" in summary
+        shown = {path.relative_to(book).as_posix() for path in book.glob("examples_*/*.md")}
+        sources = [path for folder in stage.EXAMPLES for path in (ROOT / folder).iterdir() if path.name != "Makefile"]
+        assert shown == {f"{path.parent.name}/{path.name}.md" for path in sources} and all(page in summary for page in shown)
+        example = (book / "examples_c/01_spring_and_block.c.md").read_text(encoding="utf-8")
+        assert "the same in Fortran](../examples_fortran/01_spring_and_block.f90.md)" in example
+        assert "[`feti_solve`](../reference/feti_solve.md)" in example
+        assert (ROOT / "examples_c/01_spring_and_block.c").read_text(encoding="utf-8") in example
+        assert "| [20](examples_fortran/20_skyline_host.f.md) skyline host |" in (book / "examples.md").read_text(encoding="utf-8")
 
 
 def links_follow_and_names_of_functions_become_links():
@@ -48,8 +59,9 @@ def links_follow_and_names_of_functions_become_links():
             link = lambda _line, *parts: book.link(page, Path("."), *parts)
             return markdown.rewrite(text, link, code)
 
-        assert staged("[c](certificate.md#x) [r](../README.md)") == "[c](certificate.md#x) [r](index.md)"
-        assert staged("see [`l`](../src/lib.rs), `feti_solve`") == "see `l`, [`feti_solve`](reference/feti_solve.md)"
+        assert staged("[c](certificate.md#x) [r](../README.md)") == "[c](certificate.md#x) [r](introduction.md)"
+        assert staged("see [`l`](../src/error.rs), `feti_solve`") == "see `l`, [`feti_solve`](reference/feti_solve.md)"
+        assert staged("[f](../include/fortran) [e](../examples_c/demo.h)") == "[f](../fortran/module/feti_contact.html) [e](examples_c/demo.h.md)"
         assert staged("# On `feti_solve`\n\n    `feti_solve`\n") == "# On `feti_solve`\n\n    `feti_solve`\n"
         assert staged("[t](https://example.org) [`feti_solve`](#x)") == "[t](https://example.org) [`feti_solve`](#x)"
 

@@ -22,7 +22,7 @@ def of_book(book):
     for page in sorted(book.rglob("*.html")):
         place = page.relative_to(book).as_posix()
         found = [(anchor, plain(text)) for anchor, text in HEADING.findall(page.read_text(encoding="utf-8"))]
-        if not found or place in ("print.html", "toc.html", "404.html"):
+        if not found or place in ("index.html", "print.html", "toc.html", "404.html"):
             continue
         title = found[0][1]
         if place.startswith("examples_"):

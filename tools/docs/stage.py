@@ -2,7 +2,7 @@
 """stage.py PAGES OUT: puts the sources of the book together in the folder OUT.
 
 The chapters are those of docs/book/SUMMARY.md, read where they are; the reference pages are those of the folder PAGES
-(feti-bindgen --pages, feti-reference). In OUT a chapter lies where docs/ has it, README.md as index.md, the reference
+(feti-bindgen --pages, feti-reference). In OUT a chapter lies where docs/ has it, README.md as introduction.md, the reference
 below reference/, a page for each source of the examples below examples_c/ and examples_fortran/. Links to chapters, examples
 and pictures follow; a link to another file of the repository becomes its text; the name of a function between ticks becomes
 a link to its page. Exit status 1 where a chapter is missing or a document is none."""
@@ -24,6 +24,8 @@ PICTURES = {".svg", ".png"}
 UNCOLOURED = re.compile(r"^( *```)(fortran|cmake)$", re.M)
 EXAMPLES = {"examples_c": "C", "examples_fortran": "Fortran"}
 LANGUAGES = {".c": "c", ".h": "c", ".f90": "fortran", ".f": "fortran"}
+# An example in a table: its number and its name.
+NUMBERED = re.compile(r"(?<=[|,] )\d\d(?= [A-Za-z])")
 # Parts of the documents that are not made from documents: where a link to their sources leads, from the book.
 PARTS = {ROOT / "include/feti_contact.h": "reference/functions.md", ROOT / "include/fortran": "../fortran/module/feti_contact.html",
          ROOT / "src/lib.rs": "../rust/feti_contact/index.html"}
@@ -33,7 +35,7 @@ REFERENCE = ["functions", "types", "options", "statuses"]
 def staged(path):
     """Where a document of the repository lies in the book."""
     path = path.relative_to(ROOT)
-    return "index.md" if path.name == "README.md" else path.as_posix().removeprefix("docs/")
+    return "introduction.md" if path.name == "README.md" else path.as_posix().removeprefix("docs/")
 
 
 def chapters():
@@ -58,6 +60,12 @@ def examples():
     return sorted(found, key=lambda path: (not path.stem[0].isdigit(), path.stem, path.parent.name))
 
 
+def numbered(number, folder):
+    """The number of an example as a link from that folder to its first source."""
+    path = next((path for path in examples() if path.name.startswith(f"{number}_")), None)
+    return f"[{number}]({os.path.relpath(path, folder)})" if path else number
+
+
 class Stage:
     """Writes the chapters, given those of the book and the functions that have a page."""
 
@@ -75,7 +83,10 @@ class Stage:
             page = self.functions.get(words)
             return f"[{whole}]({os.path.relpath(page, here)})" if page else whole
 
-        self.write(self.places[path], markdown.rewrite(path.read_text(encoding="utf-8"), link, code))
+        text = path.read_text(encoding="utf-8")
+        if path.name in ("README.md", "examples.md"):
+            text = re.sub(r"^\|.*", lambda row: NUMBERED.sub(lambda number: numbered(number[0], path.parent), row[0]), text, flags=re.M)
+        self.write(self.places[path], markdown.rewrite(text, link, code))
 
     def example(self, path):
         text = path.read_text(encoding="utf-8")
@@ -83,7 +94,8 @@ class Stage:
         beside = [f"[the same in {EXAMPLES[twin.parent.name]}](../{self.places[twin]})" for twin in twins]
         calls = [f"[`{name}`](../{page})" for name, page in self.functions.items() if re.search(rf"\b{name}\b", text)]
         head = ", ".join(["[All examples](../examples.md)", *beside]) + ("\n\nCalls " + ", ".join(calls) if calls else "")
-        self.write(self.places[path], f"# {path.name}\n\n{head}\n\n```{LANGUAGES[path.suffix]}\n{text}```\n")
+        code = f'<div class="example">\n\n```{LANGUAGES[path.suffix]}\n{text}```\n\n</div>\n'
+        self.write(self.places[path], f"# {path.name}\n\n{head}\n\n{code}")
 
     def link(self, path, here, whole, opened, target, closed):
         name, mark, anchor = target.partition("#")
