@@ -73,8 +73,8 @@ build/data/%: tests/data/%.gz
 	@gzip -dc $< > $@
 
 # ---- installation: shared library with its links, static library, header, Fortran sources, pkg-config, CMake
-# LIBDIR, INCLUDEDIR, DATADIR, DOCDIR, MANDIR as distributions set them, absolute or below PREFIX. tools/install.sh has the list.
-INSTALL = PREFIX='$(PREFIX)' DESTDIR='$(DESTDIR)' LIBDIR='$(LIBDIR)' INCLUDEDIR='$(INCLUDEDIR)' DATADIR='$(DATADIR)' \
+# BINDIR, LIBDIR, INCLUDEDIR, DATADIR, DOCDIR, MANDIR as distributions set them, absolute or below PREFIX. tools/install.sh has the list.
+INSTALL = PREFIX='$(PREFIX)' DESTDIR='$(DESTDIR)' BINDIR='$(BINDIR)' LIBDIR='$(LIBDIR)' INCLUDEDIR='$(INCLUDEDIR)' DATADIR='$(DATADIR)' \
     DOCDIR='$(DOCDIR)' MANDIR='$(MANDIR)' RELEASE='$(RELEASE)' tools/install.sh
 
 install: lib
@@ -284,6 +284,7 @@ man:
 	rm -rf $(DOCS)/man
 	$(CARGO) run --release --locked --quiet -p feti-bindgen -- --pages $(DOCS)/reference
 	mv $(DOCS)/reference/man $(DOCS)/man
+	install -D -m 644 program/feti-contact.1 $(DOCS)/man/man1/feti-contact.1
 	rm -rf $(DOCS)/reference
 
 docs: $(TOOLS)/mdbook-$(MDBOOK) $(TOOLS)/ford/installed

@@ -1,6 +1,6 @@
 #!/bin/sh
 # install.sh install|uninstall|list: puts what a host needs below $DESTDIR$PREFIX, removes exactly that, or lists it.
-# From the environment: PREFIX, DESTDIR; LIBDIR, INCLUDEDIR, DATADIR, DOCDIR, MANDIR (absolute or below PREFIX);
+# From the environment: PREFIX, DESTDIR; BINDIR, LIBDIR, INCLUDEDIR, DATADIR, DOCDIR, MANDIR (absolute or below PREFIX);
 # RELEASE, the folder of the built libraries; STRIP, what takes symbols off them, nothing: they stay as built; LD, OBJCOPY, what makes
 # the static library one object.
 set -eu
@@ -15,6 +15,7 @@ OBJCOPY=${OBJCOPY:-objcopy}
 cd "$(dirname "$0")/.."
 # placed FOLDER DEFAULT: the folder, or the default, below PREFIX unless absolute.
 placed() { case ${1:-$2} in /*) echo "${1:-$2}" ;; *) echo "$PREFIX/${1:-$2}" ;; esac; }
+BINDIR=$(placed "${BINDIR-}" bin)
 LIBDIR=$(placed "${LIBDIR-}" lib)
 INCLUDEDIR=$(placed "${INCLUDEDIR-}" include)
 DATADIR=$(placed "${DATADIR-}" share)
@@ -29,12 +30,14 @@ VERSION=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 case $VERSION in 0.*) SOVERSION=${VERSION%.*} ;; *) SOVERSION=${VERSION%%.*} ;; esac
 
 # files: a line MODE|SOURCE|TARGET for every file; mode `link`: SOURCE is what the link says; `fill`: a template; `shared`, `static`: a
-# library.
+# library, or the program.
 files() {
     echo "shared|$RELEASE/libfeti_contact.so|$LIBDIR/libfeti_contact.so.$VERSION"
     echo "link|libfeti_contact.so.$VERSION|$LIBDIR/libfeti_contact.so.$SOVERSION"
     echo "link|libfeti_contact.so.$SOVERSION|$LIBDIR/libfeti_contact.so"
     echo "static|$RELEASE/libfeti_contact.a|$LIBDIR/libfeti_contact.a"
+    echo "shared|$RELEASE/feti-contact|$BINDIR/feti-contact"
+    echo "644|program/feti-contact.1|$MANDIR/man1/feti-contact.1"
     echo "644|include/feti_contact.h|$INCLUDEDIR/feti_contact.h"
     echo "fill|cmake/feti_contact.pc.in|$LIBDIR/pkgconfig/feti_contact.pc"
     echo "fill|cmake/feti_contact-config.cmake.in|$CMAKEDIR/feti_contact-config.cmake"
@@ -102,7 +105,7 @@ fill() {
         -e "s|@F77@|$(f77)|g" -e 's/ *$//' "$1"
 }
 
-# shared SOURCE TARGET: the shared library, without what only a debugger reads.
+# shared SOURCE TARGET: the shared library or the program, without what only a debugger reads.
 shared() {
     install -m 755 "$1" "$2"
     [ -z "$STRIP" ] || "$STRIP" --strip-unneeded "$2" || echo "install.sh: $STRIP does not strip $2" >&2

@@ -143,6 +143,7 @@ impl Contents {
         let kinds = [
             (any(|body| body.fixing), "fixing unknowns"),
             (any(|body| body.numbered), "numbers of unknowns"),
+            (any(|body| body.xyz.is_some() && body.xyz_modes != 1), "the kind of the motions of coordinates"),
             (any(|body| body.pieces > 1), "the pieces of bodies (K is their sum)"),
         ];
         kinds.iter().filter(|(left, _)| *left).map(|(_, what)| *what).collect::<Vec<_>>().join(", ")

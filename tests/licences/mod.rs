@@ -71,7 +71,7 @@ fn factor(words: &[&str], at: &mut usize) -> Option<String> {
     FREE.contains(&word).then(|| word.to_string())
 }
 
-/// (name, version, licence expression) of what is linked: dependencies of the library on a target, by default this one, their
+/// (name, version, licence expression) of what is linked: dependencies of the library and of the program on a target, by default this one, their
 /// dependencies, without those that run only while the library is built.
 fn linked_crates(target: &[&str]) -> BTreeSet<(String, String, String)> {
     let tree = Command::new(env!("CARGO"))
@@ -89,8 +89,9 @@ fn linked_crates(target: &[&str]) -> BTreeSet<(String, String, String)> {
             "--format",
             "{p}|{l}",
             "--manifest-path",
-            concat!(env!("CARGO_MANIFEST_DIR"), "/c/Cargo.toml"),
+            concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"),
         ])
+        .args(["--package", "feti-contact-c", "--package", "feti-contact-program"])
         .args(target)
         .output()
         .expect("cargo tree");
@@ -190,7 +191,7 @@ fn notices() -> String {
 }
 
 const HEAD: &str = "\
-Licences of what is linked into libfeti_contact besides its own sources (written by make licences).
+Licences of what is linked into libfeti_contact and feti-contact besides their own sources (written by make licences).
 Part of every copy of the library in binary form, with LICENSE-MIT or LICENSE-APACHE. What is used under
 which licence, and the source of the part under MPL-2.0: docs/licences.md.
 

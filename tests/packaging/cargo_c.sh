@@ -1,5 +1,5 @@
 #!/bin/sh
-# cargo_c.sh ROOT TOOLS WORK: cargo cinstall (cargo-c in TOOLS/bin) puts what make install does, but the CMake package: the same
+# cargo_c.sh ROOT TOOLS WORK: cargo cinstall (cargo-c in TOOLS/bin) puts what make install does, but the CMake package and the program: the same
 # files, soname, exported symbols, pkg-config answers; a host is built with it and prints what is right.
 set -eu
 root=$1 work=$3
@@ -13,7 +13,7 @@ export CARGO_PROFILE_RELEASE_OPT_LEVEL=0 CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PRO
 
 for way in make cargo; do
     prefix=$work/by_$way/usr
-    { (cd "$prefix" && find . ! -type d ! -path './lib/cmake/*' | sort)
+    { (cd "$prefix" && find . ! -type d ! -path './lib/cmake/*' ! -path './bin/*' ! -path './share/man/man1/*' | sort)
       readelf -dW "$prefix/lib/libfeti_contact.so" | sed -n 's/.*\(SONAME.*\)/\1/p; s/.*\(NODELETE\).*/\1/p'
       find "$prefix/lib" -type l -exec basename {} \; | sort | sed 's/^/a link: /'
       nm -D --defined-only "$prefix/lib/libfeti_contact.so" | awk '{ print $NF }' | sort

@@ -19,6 +19,7 @@ reference() {
     "$cargo" run --profile "$profile" --locked --quiet -p feti-bindgen -- --pages $docs/reference
     "$cargo" run --profile "$profile" --locked --quiet -p feti-reference -- $docs/reference
     mv $docs/reference/man $docs/man
+    install -D -m 644 program/feti-contact.1 $docs/man/man1/feti-contact.1
 }
 
 book() {

@@ -22,7 +22,10 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
             && (resisted(body) > ROUNDING
                 || !is_round && body.motions.as_ref().is_none_or(|of| of.columns == 0))
         {
-            let what = format!("the entries of K have only {digits} digits");
+            let what = match is_single(body) {
+                true => "the entries of K have single precision".to_owned(),
+                false => format!("the entries of K have only {digits} digits"),
+            };
             found.push(Suspicion::new(
                 format!("body {p}"),
                 what,
@@ -44,11 +47,15 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
 
 /// Significant decimal digits of the entries of K, up to 17; single precision counts as 8.
 pub fn digits(body: &Body) -> usize {
-    let values = &body.k.val;
-    if !values.is_empty() && values.iter().all(|v| f64::from(*v as f32) == *v) {
-        return FEW.min(decimal(values));
+    match is_single(body) {
+        true => FEW.min(decimal(&body.k.val)),
+        false => decimal(&body.k.val),
     }
-    decimal(values)
+}
+
+fn is_single(body: &Body) -> bool {
+    let values = &body.k.val;
+    !values.is_empty() && values.iter().all(|v| f64::from(*v as f32) == *v)
 }
 
 /// The rounding of a sum leaves more digits in a few entries: all but one of 32 have so many.

@@ -6,6 +6,8 @@ use crate::show::{listed, Suspicion};
 
 /// Digits that coordinates and normals agree to.
 const AGREE: f64 = 1e-6;
+/// Fewer rows show nothing that most of them have.
+const FEW: usize = 4;
 /// Larger pairs are not compared row by row.
 const MOST: usize = 4000;
 /// Pairs whose points lie so many times the size of a body apart have no common unit of length.
@@ -26,18 +28,20 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     let rows = &all.rows[0];
     for (bodies, own) in groups(all, rows) {
         let [a, .., b] = [&bodies[..], &bodies[..]].concat()[..] else { continue };
-        if bodies.len() > 2 || own.len() < 4 || bodies.iter().any(|p| all.bodies[*p].xyz.is_none()) {
+        if bodies.len() > 2 || bodies.iter().any(|p| all.bodies[*p].xyz.is_none()) {
             continue;
         }
-        let seen: Vec<Seen> = own.iter().map(|&i| see(all, rows, i, [a, b])).collect();
-        if bodies.len() == 2 && apart(all, &seen, [a, b], &mut found) {
+        let all_seen = own.iter().map(|&i| see(all, rows, i, [a, b]));
+        let seen: Vec<Seen> = all_seen.filter(|of| bodies.len() == 1 || is_whole(of)).collect();
+        if seen.len() < FEW {
             continue;
-        }
-        if bodies.len() == 2 {
-            moved(&seen, &mut found);
-            gaps(rows, &seen, &mut found);
         }
         lengths(&seen, &mut found);
+        if bodies.len() == 1 || apart(all, &seen, [a, b], &mut found) {
+            continue;
+        }
+        moved(&seen, &mut found);
+        gaps(rows, &seen, &mut found);
         turned(&seen, &mut found);
     }
     found
@@ -72,6 +76,20 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     dot(&d, &d).sqrt()
+}
+
+/// Normals of both sides that cancel.
+fn cancels(of: &Seen) -> bool {
+    distance(&of.normal[0], &of.normal[1].map(|x| -x)) <= AGREE * dot(&of.normal[0], &of.normal[0]).sqrt()
+}
+
+/// Where supports are struck out of K, a row lacks entries: what is left of the face lies beside the normal.
+fn is_whole(of: &Seen) -> bool {
+    let (n, [a, b]) = (&of.normal[0], &of.place);
+    let away = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let along = dot(&away, n).powi(2) / dot(n, n);
+    let beside = (dot(&away, &away) - along).max(0.0).sqrt();
+    cancels(of) || beside <= AGREE * (dot(a, a).sqrt() + dot(b, b).sqrt())
 }
 
 /// The rows that differ, if most of them agree.
@@ -117,8 +135,7 @@ fn apart(all: &Contents, seen: &[Seen], bodies: [usize; 2], found: &mut Vec<Susp
 
 /// If both bodies move together, no gap changes.
 fn moved(seen: &[Seen], found: &mut Vec<Suspicion>) {
-    let sum = |of: &Seen| distance(&of.normal[0], &of.normal[1].map(|x| -x));
-    let rows = exceptions(seen, |of| sum(of) <= AGREE * dot(&of.normal[0], &of.normal[0]).sqrt());
+    let rows = exceptions(seen, cancels);
     let what = "if both bodies move together, its gap changes: its entries do not sum to 0 in each direction";
     tell(
         found,
@@ -155,7 +172,8 @@ fn gaps(rows: &Rows, seen: &[Seen], found: &mut Vec<Suspicion>) {
 
 /// A normal has the length of the others if these have the length 1.
 fn lengths(seen: &[Seen], found: &mut Vec<Suspicion>) {
-    let is_unit = |of: &Seen| (dot(&of.normal[0], &of.normal[0]).sqrt() - 1.0).abs() <= AGREE;
+    let length = |normal: &[f64; 3]| dot(normal, normal).sqrt();
+    let is_unit = |of: &Seen| (length(&of.normal[0]).max(length(&of.normal[1])) - 1.0).abs() <= AGREE;
     tell(
         found,
         &exceptions(seen, is_unit),
@@ -164,7 +182,7 @@ fn lengths(seen: &[Seen], found: &mut Vec<Suspicion>) {
     );
 }
 
-/// A normal that neither of the two next rows has, which agree.
+/// A normal that neither of the two next rows has, where almost every row has that of a next one.
 fn turned(seen: &[Seen], found: &mut Vec<Suspicion>) {
     if seen.len() > MOST {
         return;
@@ -173,18 +191,20 @@ fn turned(seen: &[Seen], found: &mut Vec<Suspicion>) {
         let (a, b) = (&a.normal[0], &b.normal[0]);
         dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
     };
-    let rows: Vec<usize> = seen
-        .iter()
-        .filter(|of| {
-            let mut next: Vec<&Seen> = seen.iter().filter(|other| other.row != of.row).collect();
-            next.sort_by(|a, b| {
-                distance(&a.place[0], &of.place[0]).total_cmp(&distance(&b.place[0], &of.place[0]))
-            });
-            let [a, b, ..] = next[..] else { return false };
-            cosine(a, b) > 0.9 && cosine(of, a) < 0.3 && cosine(of, b) < 0.3
-        })
-        .map(|of| of.row)
-        .collect();
+    // of each row: its cosines with the two next rows, and theirs
+    let next = |of: &Seen| {
+        let away = |other: &&Seen| distance(&other.place[0], &of.place[0]);
+        let mut others: Vec<&Seen> = seen.iter().filter(|other| other.row != of.row).collect();
+        others.select_nth_unstable_by(1, |a, b| away(a).total_cmp(&away(b)));
+        [cosine(of, others[0]), cosine(of, others[1]), cosine(others[0], others[1])]
+    };
+    let cosines: Vec<_> = seen.iter().map(next).collect();
+    let smooth = cosines.iter().filter(|[a, b, _]| a.max(*b) > 0.9).count();
+    if 4 * smooth < 3 * seen.len() {
+        return;
+    }
+    let elsewhere = seen.iter().zip(&cosines).filter(|(_, [a, b, both])| *both > 0.9 && a.max(*b) < 0.3);
+    let rows: Vec<usize> = elsewhere.map(|(of, _)| of.row).collect();
     tell(
         found,
         &rows,

@@ -40,7 +40,11 @@ pub fn suspicions(problem: &mut Problem) -> Vec<Suspicion> {
             (place.trim_end_matches(": ").to_owned(), text[place.len()..].to_owned())
         });
         let place = if place.is_empty() { "the problem".to_owned() } else { place };
-        found.push(Suspicion::new(place, format!("{name}: {what}"), end::cure(name)));
+        found.push(Suspicion::new(
+            place,
+            if what.is_empty() { name.to_owned() } else { format!("{name}: {what}") },
+            end::cure(name),
+        ));
     }
     let findings = problem.findings().ok();
     if let Some(of) = findings.filter(|of| !of.untouched.is_empty()) {

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use crate::contents::{Contents, Rows};
 use crate::show::{listed, median, Suspicion};
 
+/// Gaps of fewer rows may all be negative by chance.
+const FEW: usize = 4;
 /// Lengths of the rows of a pair differ by the areas of nodes at most.
 const LENGTH: f64 = 1e4;
 /// Rows whose directions differ by less than this, and more than rounding, are one row, computed twice.
@@ -39,7 +41,7 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
         }
         twice(rows, kind, &mut found);
         if kind == KINDS[0] {
-            one_sided(rows, &groups, &mut found);
+            one_sided(all, rows, &groups, &mut found);
         }
     }
     found
@@ -48,7 +50,7 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
 /// All gaps of a pair below 0, or all +infinity.
 fn gaps(rows: &Rows, own: &[usize], between: &str) -> Option<Suspicion> {
     let all = |is: fn(f64) -> bool| own.iter().all(|&i| is(rows.rhs[i]));
-    if all(|gap| gap < 0.0) {
+    if own.len() >= FEW && all(|gap| gap < 0.0) {
         let remedy = "check the sign of the gaps, c = n'(x_foot - x_s), and of the normals; nothing to do for a press fit";
         return Some(Suspicion::new(between.to_owned(), "all gaps between them are negative", remedy));
     }
@@ -123,27 +125,30 @@ fn twice(rows: &Rows, kind: &str, found: &mut Vec<Suspicion>) {
     }
 }
 
-/// Few rows of one body among the many that join it to another one.
-fn one_sided(rows: &Rows, groups: &BTreeMap<Vec<usize>, Vec<usize>>, found: &mut Vec<Suspicion>) {
-    let touch = |i: usize| {
-        groups.iter().find(|(_, own)| own.binary_search(&i).is_ok()).map(|(bodies, _)| &bodies[..])
+/// A row of one body between rows that have the same length on it, but go on to a second body.
+fn one_sided(
+    all: &Contents,
+    rows: &Rows,
+    groups: &BTreeMap<Vec<usize>, Vec<usize>>,
+    found: &mut Vec<Suspicion>,
+) {
+    let mut bodies_of = vec![&[][..]; rows.rhs.len()];
+    groups.iter().for_each(|(bodies, own)| own.iter().for_each(|&i| bodies_of[i] = &bodies[..]));
+    let on = |i: usize, p: usize| {
+        let own = rows.matrix.row(i).filter(|(j, _)| all.body_of(*j) == p);
+        own.map(|(_, value)| value * value).sum::<f64>().sqrt()
     };
-    for (bodies, own) in groups.iter().filter(|(bodies, _)| bodies.len() == 1) {
-        let of_pair = |i: usize| touch(i).filter(|of| of.len() == 2 && of.contains(&bodies[0]));
-        let lost: Vec<usize> = own
-            .iter()
-            .copied()
-            .filter(|&i| {
-                let before = i.checked_sub(1).and_then(of_pair);
-                before.is_some() && before == Some(i + 1).filter(|i| *i < rows.rhs.len()).and_then(of_pair)
-            })
-            .filter(|&i| {
-                of_pair(i + 1).and_then(|of| groups.get(of)).is_some_and(|pair| pair.len() >= 4 * own.len())
-            })
-            .collect();
-        if !lost.is_empty() {
-            let what = format!("it touches body {} alone, the rows around it a second body", bodies[0]);
-            found.push(Suspicion::new(listed(KINDS[0], &lost), what, "give the entries of the face, too"));
-        }
+    let is_lost = |&i: &usize| {
+        let ([p], Some(before), Some(after)) = (bodies_of[i], i.checked_sub(1), bodies_of.get(i + 1)) else {
+            return false;
+        };
+        let is_pair = after.len() == 2 && after.contains(p) && bodies_of[before] == *after;
+        let alike = |other: usize| (on(other, *p) / on(i, *p) - 1.0).abs() <= NEARLY;
+        is_pair && alike(i - 1) && alike(i + 1) && groups[*after].len() >= FEW * groups[bodies_of[i]].len()
+    };
+    let lost: Vec<usize> = (0..rows.rhs.len()).filter(is_lost).collect();
+    if let Some(&[p]) = lost.first().map(|i| bodies_of[*i]) {
+        let what = format!("it touches body {p} alone, the rows around it a second body");
+        found.push(Suspicion::new(listed(KINDS[0], &lost), what, "give the entries of the face, too"));
     }
 }

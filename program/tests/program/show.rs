@@ -1,13 +1,11 @@
 //! `feti-contact show` names what is spoilt in a file, and is silent on healthy ones.
 
-mod support;
-
-use support::{alone, folder, healthy, said, Row, Scene};
+use crate::support::{alone, folder, healthy, said, Row, Scene};
 
 /// A name, the change, and what a line of the program says: the place, a part of the text.
-type Spoilt = (&'static str, fn(&mut Scene), &'static str, &'static str);
+pub type Spoilt = (&'static str, fn(&mut Scene), &'static str, &'static str);
 
-const SPOILT: [Spoilt; 25] = [
+pub const SPOILT: [Spoilt; 25] = [
     ("stiffness in Pa", |s| scaled(s, 1, 1e6), "bodies 0 and 1", "1e6 times stiffer"),
     (
         "coordinates in mm",
@@ -25,7 +23,7 @@ const SPOILT: [Spoilt; 25] = [
         "single precision",
         |s| s.bodies[1].k.iter_mut().for_each(|e| e.2 = f64::from(e.2 as f32)),
         "body 1",
-        "digits",
+        "single precision",
     ),
     (
         "a motion is missing",
@@ -82,7 +80,7 @@ const SPOILT: [Spoilt; 25] = [
     ),
     ("directions swapped", directions, "body 1", "coordinates"),
     ("a body without rows", |s| s.bodies.push(alone()), "body 2", "no row touches it"),
-    ("rows that contradict", contradicting, "equality row", "contradict"),
+    ("rows that contradict", contradicting, "equality row 3, 22", "contradict"),
 ];
 
 fn scaled(s: &mut Scene, p: usize, by: f64) {
@@ -120,10 +118,9 @@ fn nearly(s: &mut Scene) {
     s.contact.push(row);
 }
 
-/// One element less than none.
+/// The first element, with 36 entries in its lower triangle.
 fn negative(s: &mut Scene) {
-    let of = s.bodies[1].of_element;
-    s.bodies[1].k[..of].iter_mut().for_each(|e| e.2 *= -1.0);
+    s.bodies[1].k[..36].iter_mut().for_each(|e| e.2 *= -1.0);
 }
 
 fn directions(s: &mut Scene) {

@@ -9,8 +9,6 @@ pub struct Body {
     pub n: usize,
     /// Row, column, value: the lower triangle, element by element.
     pub k: Vec<(usize, usize, f64)>,
-    /// Entries of K of one element.
-    pub of_element: usize,
     /// None: coordinates alone.
     pub motions: Option<Vec<Vec<f64>>>,
     pub load: Vec<f64>,
@@ -52,15 +50,7 @@ fn rectangle(steps: [usize; 2], corner: [f64; 2], edge: f64) -> Body {
     let along = |d: usize| (0..n).map(|i| if i % 2 == d { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
     let turn = (0..n).map(|i| if i % 2 == 0 { -xyz[i][1] } else { xyz[i][0] }).collect();
     let motions = Some(vec![along(0), along(1), turn]);
-    Body {
-        n,
-        k,
-        of_element: 36,
-        motions,
-        load: vec![0.0; n],
-        xyz,
-        dir: (0..n).map(|i| 1 + i as i32 % 2).collect(),
-    }
+    Body { n, k, motions, load: vec![0.0; n], xyz, dir: (0..n).map(|i| 1 + i as i32 % 2).collect() }
 }
 
 /// A block that floats over another one, at a gap of 0.01, is pressed down and to the right; friction 0.3 carries what pushes it sideways.
