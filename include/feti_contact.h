@@ -2606,10 +2606,11 @@ int32_t feti_problem_write(feti_problem *p, const char *path);
  * FETI_UNSUPPORTED, on all ranks, if several make this call for a problem (feti_communicator_set).
  *
  * A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or rows
- * already. Options get their values from the file and otherwise their defaults, except index_base, which
- * is unchanged. All data pass the same checks as in the corresponding calls. FETI_IO with path and the
- * message of the system, or with the position of the first wrong byte if the file is damaged (`entry` of
- * feti_last_error_detail); FETI_UNSUPPORTED if the file has contents of a later version.
+ * already. Options get their values from the file and otherwise their defaults, except index_base,
+ * log_file and log_level, which are unchanged. All data pass the same checks as in the corresponding
+ * calls. FETI_IO with path and the message of the system, or with the position of the first wrong byte if
+ * the file is damaged (`entry` of feti_last_error_detail); FETI_UNSUPPORTED if the file has contents of a
+ * later version.
  *
  * Whatever their original form, matrices are read back as rows of the lower triangle, with ascending
  * columns and every diagonal entry. feti_body_values then expects the values in this order, and

@@ -1,7 +1,7 @@
 #!/bin/sh
 # deb.sh WORK: Debian packages of the library, its development files and its documents, in WORK, from a copy of the tree with vendored
 # crates and Debian's own Rust, without network; lintian finds no error in them; installed, they serve a host in C and one in
-# Fortran. With KEEP=1 they stay installed. DEBFULLNAME and DEBEMAIL name the maintainer; without them the address is a placeholder,
+# Fortran, and the program solves a problem file. With KEEP=1 they stay installed. DEBFULLNAME and DEBEMAIL name the maintainer; without them the address is a placeholder,
 # which lintian is told to accept. Root is needed to install; otherwise the packages are unpacked into WORK/root.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -47,6 +47,7 @@ fi
 cc host.c $(pkg-config --cflags --libs feti_contact) -o host_c
 gfortran $(pkg-config --variable=fortransources feti_contact) host.f90 $(pkg-config --libs feti_contact) -o host_fortran
 sh "$root/tests/packaging/same.sh" host.expected ./host_c ./host_fortran
+root/usr/bin/feti-contact solve "$root/tests/data/problem_v1.feti" >>log
 if [ "$(id -u)" -eq 0 ] && [ -z "${KEEP-}" ]; then
     # shellcheck disable=SC2046 # one word per package
     dpkg --purge $(for package in $packages; do dpkg-deb --field "$package" Package; done) >>log

@@ -413,8 +413,6 @@ fn word_option(host: &mut Host, name: *const c_char, choice: u8) -> i32 {
         "paper-feasible",
         "paper-monotone",
         "paper-extrapolating",
-        "phase",
-        "step",
     ];
     let word = CString::new(WORDS[usize::from(choice) % WORDS.len()]).expect("no NUL");
     let word = if host.turn() { std::ptr::null() } else { word.as_ptr() };

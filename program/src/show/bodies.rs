@@ -19,7 +19,7 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     for (p, body) in all.bodies.iter().enumerate() {
         let (digits, is_round) = (digits(body), distinct(body) < VALUES);
         if digits <= FEW
-            && (resisted(body) > ROUNDING
+            && (resisted(body) > Some(ROUNDING)
                 || !is_round && body.motions.as_ref().is_none_or(|of| of.columns == 0))
         {
             let what = match is_single(body) {
@@ -74,11 +74,9 @@ fn distinct(body: &Body) -> usize {
     sizes.len()
 }
 
-/// The largest (K R)_i relative to its terms, over the declared motions.
-pub fn resisted(body: &Body) -> f64 {
-    let Some(motions) = body.motions.as_ref().filter(|of| of.columns > 0 && of.modes == 0) else {
-        return 0.0;
-    };
+/// The largest (K R)_i relative to its terms, over the motions that are declared as exact.
+pub fn resisted(body: &Body) -> Option<f64> {
+    let motions = body.motions.as_ref().filter(|of| of.columns > 0 && of.modes == 0)?;
     let mut worst = 0.0f64;
     for r in motions.basis.chunks_exact(body.n.max(1)) {
         let (y, size) = body.product(r);
@@ -86,7 +84,7 @@ pub fn resisted(body: &Body) -> f64 {
             .zip(&size)
             .for_each(|(y, size)| worst = worst.max(if *size > 0.0 { y.abs() / size } else { 0.0 }));
     }
-    worst
+    Some(worst)
 }
 
 /// For each pair of bodies that contact rows join, the smaller and the larger of the stiffnesses at their rows.

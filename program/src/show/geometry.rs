@@ -173,7 +173,11 @@ fn gaps(rows: &Rows, seen: &[Seen], found: &mut Vec<Suspicion>) {
 /// A normal has the length of the others if these have the length 1.
 fn lengths(seen: &[Seen], found: &mut Vec<Suspicion>) {
     let length = |normal: &[f64; 3]| dot(normal, normal).sqrt();
-    let is_unit = |of: &Seen| (length(&of.normal[0]).max(length(&of.normal[1])) - 1.0).abs() <= AGREE;
+    // a body that touches itself has no normal in sum
+    let is_unit = |of: &Seen| {
+        let most = length(&of.normal[0]).max(length(&of.normal[1]));
+        (most - 1.0).abs() <= AGREE || most <= AGREE
+    };
     tell(
         found,
         &exceptions(seen, is_unit),

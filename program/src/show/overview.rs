@@ -61,7 +61,7 @@ fn of_bodies(problem: &Problem, all: &Contents) -> String {
             format!("{low:.1e} to {high:.1e}"),
             declared,
             found + if searched { " in K" } else { "" },
-            format!("{:.0e}", bodies::resisted(body)),
+            bodies::resisted(body).map_or(String::new(), |most| format!("{most:.0e}")),
             format!("{:.2e}", body.load.iter().map(|f| f * f).sum::<f64>().sqrt()),
         ]);
     }

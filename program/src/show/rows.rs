@@ -149,6 +149,10 @@ fn one_sided(
     let lost: Vec<usize> = (0..rows.rhs.len()).filter(is_lost).collect();
     if let Some(&[p]) = lost.first().map(|i| bodies_of[*i]) {
         let what = format!("it touches body {p} alone, the rows around it a second body");
-        found.push(Suspicion::new(listed(KINDS[0], &lost), what, "give the entries of the face, too"));
+        found.push(Suspicion::new(
+            listed(KINDS[0], &lost),
+            what,
+            "give the entries of the face, too; nothing to do if supports have struck them out of K",
+        ));
     }
 }

@@ -33,6 +33,29 @@ static void words(feti_problem *p)
     CHECK(strcmp(room, "prev") == 0 && length == 8, "cut to '%s'", room);
 }
 
+/* The log of a solve in a file; a path that cannot be opened is refused and changes nothing. */
+static void log_file(feti_problem *p)
+{
+    const char *path = "settings log.txt";
+    char line[256] = "", room[32];
+    int64_t length = 0;
+    FILE *file;
+
+    remove(path);
+    OK(feti_set_str(p, "log_file", path));
+    OK(feti_set_text(p, "log_level=result"));
+    EXPECT(FETI_ARGUMENT - 3, feti_set_str(p, "log_file", "/no such folder/log"));
+    EXPECT(FETI_ARGUMENT - 2, feti_set_text(p, "log_level=step log_file=/no_such_folder/log"));
+    OK(feti_get_str(p, "log_file", room, sizeof room, &length));
+    CHECK(strcmp(room, path) == 0 && length == 16, "log_file is '%s'", room);
+    OK(feti_solve(p, NULL));
+    file = fopen(path, "r");
+    CHECK(file && fgets(line, sizeof line, file) && strncmp(line, "solved: ", 8) == 0, "the first line is '%s'", line);
+    if (file) fclose(file);
+    OK(feti_set_str(p, "log_file", ""));
+    remove(path);
+}
+
 static void version(void)
 {
     char expected[32];
@@ -49,6 +72,7 @@ int main(void)
     feti_problem *p = small_problem();
     numbers(p);
     words(p);
+    log_file(p);
     version();
     check_small_answer(p, "settings");
     OK(feti_problem_destroy(&p));

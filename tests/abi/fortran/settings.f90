@@ -15,7 +15,7 @@ contains
 
   subroutine options_are_read_as_they_were_set
     type(feti_problem) :: p
-    character(len=:), allocatable :: word
+    character(len=:), allocatable :: word, level
     real(dp) :: gamma
     integer :: threads
     integer(int64) :: limit
@@ -29,6 +29,9 @@ contains
     call feti_get(p, 'threads', threads)
     call feti_get(p, 'memory_limit', limit)
     call feti_get(p, 'start', word)
+    call feti_set(p, 'log_level', 'step')
+    call feti_get(p, 'log_level', level)
+    call require(level == 'step', 'a text is read otherwise: ' // level)
     call require(abs(gamma - 2.5_dp) <= 0.0_dp .and. threads == 3 .and. limit == 8000000000_int64, 'a number is read otherwise')
     call require(word == 'previous' .and. len(word) == 8, 'a text is read otherwise: ' // word)
     call feti_problem_destroy(p)

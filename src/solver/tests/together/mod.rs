@@ -198,7 +198,10 @@ fn a_cancel_on_one_rank_ends_the_call_on_all() {
 #[test]
 fn the_log_on_rank_0_names_rows_and_failed_bodies_by_rank_and_number() {
     let lines = Arc::new(Mutex::new(String::new()));
+    let file =
+        |rank: usize| std::env::temp_dir().join(format!("feti log of rank {rank} {}", std::process::id()));
     on_ranks(3, |rank, problem| {
+        problem.set_str("log_file", file(rank).to_str().unwrap()).unwrap();
         add_chain(problem, rank);
         if rank == 1 {
             add_row(problem, 2);
@@ -228,4 +231,12 @@ fn the_log_on_rank_0_names_rows_and_failed_bodies_by_rank_and_number() {
         "{lines}"
     );
     assert_eq!(lines.matches("3 bodies, 15 unknowns").count(), 1, "rank 0 alone tells: {lines}");
+    let written: Vec<String> = (0..3).map(|rank| std::fs::read_to_string(file(rank)).unwrap()).collect();
+    assert_eq!(
+        written.iter().map(String::len).sum::<usize>(),
+        lines.len(),
+        "each file has the lines of its rank"
+    );
+    assert!(written[0].contains("3 bodies, 15 unknowns"), "{written:?}");
+    (0..3).for_each(|rank| std::fs::remove_file(file(rank)).unwrap());
 }
