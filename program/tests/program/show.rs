@@ -143,7 +143,7 @@ fn what_is_spoilt_in_a_file_is_named_with_its_place_and_a_remedy() {
         spoil(&mut scene);
         scene.write(&path);
         let (out, err, status) = said(&["show", path.to_str().unwrap()]);
-        let is_named = |line: &str| line.trim_start().starts_with(&format!("{place}")) && line.contains(what);
+        let is_named = |line: &str| line.trim_start().starts_with(place) && line.contains(what);
         let named = out
             .lines()
             .zip(out.lines().skip(1))
