@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use feti_contact::solver::{FrictionInput, Modes, Problem, RowKind, RowsInput, TripletInput};
+use feti_contact::solver::{FrictionInput, Modes, Problem, RowKind, RowsInput, Storage, TripletInput};
 
 use crate::contents::{Contents, Matrix, MODES};
 
@@ -74,10 +74,14 @@ impl Text {
         Ok((rows, columns, data.chunks_exact(3).map(entry).collect::<Result<_, _>>()?))
     }
 
-    fn by_rows(&self, unknowns: usize) -> Result<(Vec<usize>, Vec<i64>, Vec<f64>), String> {
+    /// Of a matrix with more rows than entries there have to be so many other numbers.
+    fn by_rows(&self, unknowns: usize, others: usize) -> Result<(Vec<usize>, Vec<i64>, Vec<f64>), String> {
         let (rows, columns, mut entries) = self.triplets()?;
         if columns != unknowns {
             return Err(self.said(&format!("{columns} columns, not the {unknowns} unknowns of all bodies")));
+        }
+        if rows > entries.len().max(others) {
+            return Err(self.said(&format!("{rows} rows, but only {} entries", entries.len())));
         }
         entries.sort_by_key(|(i, _, _)| *i);
         let ptr = (0..=rows).map(|i| entries.partition_point(|entry| entry.0 < i)).collect();
@@ -99,19 +103,24 @@ pub fn read(folder: &Path) -> Result<Problem, String> {
     problem.offer_method(&paper::Paper);
     let told = |error: feti_contact::error::Error| format!("{}: {error}", folder.display());
     if let Ok(options) = fs::read_to_string(folder.join("options.txt")) {
+        // a folder of somebody else writes nowhere
+        if options.contains("log_file") {
+            return Err(format!("{}: options.txt: log_file belongs to the command line", folder.display()));
+        }
         problem.set_text(&options).map_err(told)?;
     }
     let mut starts = vec![0];
     while let Some(k) = text(folder, &format!("K{}.mtx", starts.len()))? {
-        let (n, _, entries) = k.triplets()?;
+        let (n, columns, entries) = k.triplets()?;
+        if columns != n {
+            return Err(k.said(&format!("{n} rows and {columns} columns")));
+        }
         let body = problem.add_body(n).map_err(told)?;
-        let is_general = k.first.contains("general");
-        let lower: Vec<_> = entries.into_iter().filter(|(i, j, _)| !is_general || i >= j).collect();
+        let storage = if k.first.contains("general") { Storage::Full } else { Storage::Lower };
         let [row, col] =
-            [0, 1].map(|k| lower.iter().map(|e| if k == 0 { e.0 } else { e.1 } as i64).collect::<Vec<_>>());
-        let val: Vec<f64> = lower.iter().map(|e| e.2).collect();
-        let k =
-            TripletInput { row: &row, col: &col, val: &val, storage: feti_contact::solver::Storage::Lower };
+            [0, 1].map(|k| entries.iter().map(|e| if k == 0 { e.0 } else { e.1 } as i64).collect::<Vec<_>>());
+        let val: Vec<f64> = entries.iter().map(|e| e.2).collect();
+        let k = TripletInput { row: &row, col: &col, val: &val, storage };
         problem.set_stiffness_triplets(body, n, k).map_err(told)?;
         motions(&mut problem, folder, body, n)?;
         starts.push(starts[body] + n);
@@ -131,12 +140,13 @@ pub fn read(folder: &Path) -> Result<Problem, String> {
             .try_for_each(|p| problem.set_load(p, &f.numbers[starts[p]..starts[p + 1]]))
             .map_err(told)?;
     }
-    if let Some(places) = of_length("dofs.txt", 5 * unknowns)? {
+    if let Some(places) = of_length("dofs.txt", unknowns.saturating_mul(5))? {
         coordinates(&mut problem, &places, &starts).map_err(told)?;
     }
     for (matrix, rhs, kind) in KINDS {
         let Some(rows) = text(folder, matrix)? else { continue };
-        let (ptr, dof, val) = rows.by_rows(unknowns)?;
+        let given = text(folder, rhs)?.map_or(0, |of| of.numbers.len());
+        let (ptr, dof, val) = rows.by_rows(unknowns, given)?;
         let rows = ptr.len() - 1;
         let gaps = of_length(rhs, rows)?.map_or(vec![0.0; rows], |of| of.numbers);
         let rows = RowsInput { ptr: &ptr, body: None, dof: &dof, val: &val, rhs: Some(&gaps) };
@@ -162,6 +172,9 @@ fn motions(problem: &mut Problem, folder: &Path, body: usize, n: usize) -> Resul
         "soft" => Modes::Soft,
         _ => Modes::Exact,
     };
+    if !r.first.contains("array") {
+        return Err(r.said("an array is expected, all numbers by columns"));
+    }
     let (rows, columns, entries) = r.triplets()?;
     let mut basis = vec![0.0; rows * columns];
     entries.iter().for_each(|(i, j, value)| basis[i + rows * j] = *value);
@@ -196,7 +209,7 @@ fn friction(problem: &mut Problem, folder: &Path, unknowns: usize) -> Result<(),
         return Ok(());
     };
     let told = |error: feti_contact::error::Error| format!("friction.txt: {error}");
-    let (ptr, dof, val) = rows.by_rows(unknowns)?;
+    let (ptr, dof, val) = rows.by_rows(unknowns, laws.numbers.len())?;
     let all = ptr.len() - 1;
     // 4 numbers a node, and one for each row
     let nodes = laws.numbers.len().saturating_sub(all) / 4;

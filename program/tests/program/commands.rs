@@ -136,5 +136,22 @@ fn no_damaged_file_makes_the_program_panic() {
         }
         fs::write(&name, whole).unwrap();
     }
+    let head = "%%MatrixMarket matrix coordinate real general\n";
+    for (name, spoilt, says) in [
+        ("K1.mtx", "1000000000000000 1000000000000000 0\n", ""),
+        ("K1.mtx", "2 2 3\n1 1 2.0\n1 2 -1.0\n2 2 2.0\n", "symmetr"),
+        ("B.mtx", "1000000000000000 144 0\n", "B.mtx: 1000000000000000 rows, but only 0 entries"),
+        ("R1.mtx", "4000000000 4000000000 0\n", "R1.mtx: an array is expected"),
+        ("options.txt", "log_file=log", "log_file belongs to the command line"),
+    ] {
+        let old = fs::read(texts.join(name)).ok();
+        fs::write(texts.join(name), head.to_owned() + spoilt).unwrap();
+        let (_, err, status) = said(&["solve", text(&texts)]);
+        assert!(status == 2 && err.contains(says) && !err.contains("panicked"), "{name}: {status} {err}");
+        match old {
+            Some(old) => fs::write(texts.join(name), old).unwrap(),
+            None => fs::remove_file(texts.join(name)).unwrap(),
+        }
+    }
     fs::remove_dir_all(folder).unwrap();
 }
