@@ -181,7 +181,7 @@ bits:
 	    the_bits_of_many --ignored --nocapture | grep ': [0-9a-f]\{16\}$$'
 
 test:
-	@tools/setup.sh flang-19
+	@tools/setup.sh flang-19 clang-19
 	$(CARGO) test --release --workspace --locked
 	@$(MAKE) --no-print-directory stage data
 	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data

@@ -43,6 +43,7 @@ files() {
     echo "fill|cmake/feti_contact-config.cmake.in|$CMAKEDIR/feti_contact-config.cmake"
     echo "fill|cmake/feti_contact-config-version.cmake.in|$CMAKEDIR/feti_contact-config-version.cmake"
     echo "644|cmake/feti_contact-targets.cmake|$CMAKEDIR/feti_contact-targets.cmake"
+    echo "644|include/feti_contact.hpp|$INCLUDEDIR/feti_contact.hpp"
     each "$FORTRANDIR" include/fortran/*.f90 include/fortran/*.inc include/fortran/fpm.toml
     each "$MPIDIR" mpi/*
     each "$DATADIR/feti_contact/suppressions" tools/suppressions/*

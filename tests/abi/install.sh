@@ -11,7 +11,7 @@ has() { for file in "$@"; do [ -s "$file" ] || { echo "$file was not installed";
 rm -rf "$stage"
 make_it install PREFIX=/opt/feti
 cd "$stage/opt/feti"
-has lib/libfeti_contact.so lib/libfeti_contact.a bin/feti-contact share/man/man1/feti-contact.1 include/feti_contact.h lib/pkgconfig/feti_contact.pc \
+has lib/libfeti_contact.so lib/libfeti_contact.a bin/feti-contact share/man/man1/feti-contact.1 include/feti_contact.h include/feti_contact.hpp lib/pkgconfig/feti_contact.pc \
     lib/cmake/feti_contact/feti_contact-config.cmake share/feti_contact/fortran/feti_contact.f90 \
     share/feti_contact/fortran/fpm.toml share/feti_contact/mpi/feti_mpi.c share/feti_contact/mpi/feti_contact_mpi.h share/doc/feti-contact/LICENSE-MIT share/doc/feti-contact/LICENSE-THIRD-PARTY \
     share/doc/feti-contact/docs/licences.md share/doc/feti-contact/examples_c/Makefile \
