@@ -25,6 +25,7 @@
 #                over all of them; Chromium opens page by page without network (some minutes, and tells of which part)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
 # make man       the manual pages alone                                make deb        Debian packages in build/deb (some minutes)
+# make release   source archive with all crates, wheel, Debian packages, checksums in build/release (a quarter of an hour)
 # make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
 # bench, scaling, demo, docs, hosts, hosts-python, mpi and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
@@ -42,7 +43,7 @@ STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery rungs bits ranks test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling spooles paper docs
 .PHONY: quick driver man deb mpi mpi-short hosts hosts-python
-.PHONY: abi licences numbers vary packaging stage install uninstall lint fmt clean
+.PHONY: abi licences numbers vary packaging release stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -99,6 +100,10 @@ packaging: build/tools/bin/cargo-cinstall
 	sh tests/packaging/offline.sh $(CURDIR) $(CURDIR)/build/offline
 	sh tests/packaging/oldest.sh $(CURDIR) $(CURDIR)/build/oldest
 	sh tests/packaging/cargo_c.sh $(CURDIR) $(CURDIR)/build/tools $(CURDIR)/build/cargo_c
+
+# What a release consists of, in build/release.
+release:
+	tools/release.sh build/release
 
 # Debian packages in build/deb: the library, its development files, its documents.
 deb:

@@ -18,7 +18,7 @@ cd "$work/feti-contact"
 cp -R packaging/debian debian
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 maintainer="${DEBFULLNAME:-The authors of feti-contact} <${DEBEMAIL:-feti-contact@localhost}>"
-sed -i "s/@VERSION@/$version/; s/@DATE@/$(date -R)/; s/@MAINTAINER@/$maintainer/" debian/changelog.in debian/control
+sed -i "s/@VERSION@/$version/; s/@DATE@/$(date -R ${SOURCE_DATE_EPOCH:+-d @$SOURCE_DATE_EPOCH})/; s/@MAINTAINER@/$maintainer/" debian/changelog.in debian/control
 mv debian/changelog.in debian/changelog
 sed 's/^$/./; s/^/ /' LICENSE-MIT >"$work/mit"
 sed -i -e "/@MIT@/r $work/mit" -e '/@MIT@/d' debian/copyright

@@ -19,6 +19,9 @@ claim("packaging: plain make and pkg-config build shared, static and wholly stat
       sh "${HOSTS}/make.sh" "${HOSTS}" "${FETI_PREFIX}")
 claim("packaging: an fpm host depends on the Fortran sources by path"
       sh "${HOSTS}/fpm.sh" "${HOSTS}" "${FETI_PREFIX}" "${CMAKE_BINARY_DIR}/fpm")
+find_program(PYTHON python3 REQUIRED)
+claim("packaging: the recipes for conda and Spack have version, Rust and features of Cargo.toml and the files of make install"
+      "${PYTHON}" "${HOSTS}/recipes.py" "${PROJECT_ROOT}")
 claim("packaging: cargo-c is asked for the data that make install puts"
       sh "${HOSTS}/assets.sh" "${PROJECT_ROOT}" "${CMAKE_BINARY_DIR}/assets")
 claim("packaging: functions, types and constants are those of the baseline or more, and a change that breaks a host is seen"

@@ -1,12 +1,14 @@
 #!/bin/sh
-# offline.sh ROOT WORK: a copy of the tree with the crates that cargo vendor has put into it is built and installed without
-# network and without what cargo has stored before, for a target that CARGO_BUILD_TARGET names; a host prints what is right.
-# Optimisation is left out: it is the way that counts.
+# offline.sh ROOT WORK [ARCHIVE]: a copy of the tree with the crates that cargo vendor has put into it, or an archive of make release, is
+# built and installed without network and without what cargo has stored before, for a target that CARGO_BUILD_TARGET names; a host
+# prints what is right, and the library has the version of ROOT. Optimisation is left out: it is the way that counts.
 set -eu
 root=$1 work=$2
 rm -rf "$work"
-mkdir -p "$work/home"
-"$root/tools/vendored.sh" "$work/tree"
+mkdir -p "$work/home" "$work/tree"
+if [ $# -gt 2 ]; then tar -xzf "$3" -C "$work/tree" --strip-components=1
+else "$root/tools/vendored.sh" "$work/tree"
+fi
 cd "$work/tree"
 # A network of its own, with nothing in it, where the system lets us have one.
 alone=
@@ -18,4 +20,7 @@ $alone make --no-print-directory install PREFIX="$work/installed" >/dev/null
 cd "$work"
 cc -I installed/include tree/tests/packaging/host.c -o host -Linstalled/lib -lfeti_contact "-Wl,-rpath,$work/installed/lib"
 sh tree/tests/packaging/same.sh tree/tests/packaging/host.expected ./host
+echo 'extern int puts(const char *); int main(void) { return puts(feti_version()) < 0; }' |
+    cc -x c -include feti_contact.h -I installed/include - -o version -Linstalled/lib -lfeti_contact "-Wl,-rpath,$work/installed/lib"
+grep -qx "version = \"$(./version)\"" "$root/Cargo.toml"
 rm -rf "$work/target" "$work/tree"
