@@ -26,7 +26,7 @@
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
 # make man       the manual pages alone                                make deb        Debian packages in build/deb (some minutes)
 # make release   source archive with all crates, wheel, Debian packages, checksums in build/release (a quarter of an hour)
-# make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
+# make packaging cargo cinstall against make install, an installation without network, the conda recipe (some minutes, the first time many)
 # bench, scaling, demo, docs, hosts, hosts-python, mpi and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
@@ -96,10 +96,17 @@ build/tools/bin/cargo-cinstall:
 	    $(CARGO) install cargo-c --version $(CARGO_C) --locked --debug --root build/tools
 	rm -rf build/tools/target
 
-packaging: build/tools/bin/cargo-cinstall
+build/tools/conda/installed: packaging/conda/requirements.txt
+	@tools/setup.sh
+	python3 -m venv --clear $(@D)
+	$(@D)/bin/pip install --quiet --requirement $<
+	touch $@
+
+packaging: build/tools/bin/cargo-cinstall build/tools/conda/installed
 	sh tests/packaging/offline.sh $(CURDIR) $(CURDIR)/build/offline
 	sh tests/packaging/oldest.sh $(CURDIR) $(CURDIR)/build/oldest
 	sh tests/packaging/cargo_c.sh $(CURDIR) $(CURDIR)/build/tools $(CURDIR)/build/cargo_c
+	build/tools/conda/bin/python tests/packaging/conda.py $(CURDIR) $(CURDIR)/build/conda
 
 # What a release consists of, in build/release.
 release:
