@@ -182,11 +182,13 @@ typedef struct {
     double shear[CELLS];                /* over mu p0 */
     double missed, size, worst;         /* root mean square over 2a of its error, and of the closed form; the largest error */
     double pressed, stuck, shift, sums; /* half-widths of contact and stick, mm; shift, mm; relative error of both sums */
+    double pressure[CELLS], gap[CELLS], u[2 * N]; /* MPa, mm, mm: upper cylinder, lower one */
+    int32_t state[CELLS];                         /* FETI_FRICTION_OPEN, _STICK, _SLIP, .. */
 } step_result;
 
 static void solve_step(feti_problem *problem, const contact *c, int step, step_result *out, feti_info *info)
 {
-    static double lambda_n[CELLS], lambda_t[CELLS], load[N], u[N];
+    static double lambda_n[CELLS], lambda_t[CELLS], load[N];
     const double push = PART[step] * MU * c->load;
     double normal = 0.0, along = 0.0, missed = 0.0, size = 0.0;
 
@@ -196,10 +198,13 @@ static void solve_step(feti_problem *problem, const contact *c, int step, step_r
     CALL(feti_friction_commit(problem)); /* the step is accepted: slips of the next one are counted from here */
     CALL(feti_multipliers(problem, FETI_INEQUALITY, CELLS, lambda_n));
     CALL(feti_multipliers(problem, FETI_TANGENTIAL, CELLS, lambda_t));
-    CALL(feti_displacement(problem, 0, N, u));
+    CALL(feti_gaps(problem, CELLS, out->gap));
+    CALL(feti_friction_states(problem, CELLS, out->state));
+    for (int b = 0; b < 2; b++) CALL(feti_displacement(problem, b, N, out->u + b * N));
     for (int i = 0; i < CELLS; i++) {
         const double closed = mindlin(step, c->x[i]);
         double difference;
+        out->pressure[i] = lambda_n[i] / c->cell;
         out->shear[i] = lambda_t[i] / c->cell / (MU * c->p0);
         difference = out->shear[i] - closed;
         missed += difference * difference, size += closed * closed;
@@ -208,21 +213,81 @@ static void solve_step(feti_problem *problem, const contact *c, int step, step_r
     }
     out->missed = sqrt(missed * c->cell / (2.0 * HALF)), out->size = sqrt(size * c->cell / (2.0 * HALF));
     out->pressed = 0.5 * (double)info->active * c->cell, out->stuck = 0.5 * (double)info->sticking * c->cell;
-    out->shift = u[ALONG + FAR]; /* the other far point is held */
+    out->shift = out->u[ALONG + FAR]; /* the other far point is held */
     out->sums = fmax(fabs(normal - c->load), fabs(along - push)) / c->load;
+}
+
+/* Von Mises stress in the lower half plane, at depth below x: each cell acts as a force F of Flamant at its middle, whose stress at
+   the distance d is -(2 / pi) (F.d) d d' / |d|^4; plane strain. (MPa) */
+static double von_mises(const contact *c, const step_result *found, double x, double depth)
+{
+    double xx = 0.0, zz = 0.0, xz = 0.0;
+
+    for (int i = 0; i < CELLS; i++) {
+        const double d = x - c->x[i], square = d * d + depth * depth;
+        const double along = found->shear[i] * MU * c->p0 * c->cell, down = found->pressure[i] * c->cell;
+        const double factor = -2.0 / PI * (along * d + down * depth) / (square * square);
+        xx += factor * d * d, zz += factor * depth * depth, xz += factor * d * depth;
+    }
+    const double yy = POISSON * (xx + zz);
+    return sqrt(0.5 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) + 3.0 * xz * xz);
+}
+
+/* Cells of both surfaces with what the contact does to them, and squares of the lower half plane with their stress. */
+static void draw_step(const char *folder, const contact *c, int step, const step_result *found)
+{
+    enum { ACROSS = 75, DOWN = 40, SQUARES = ACROSS * DOWN, ALL = 2 * CELLS + SQUARES,
+           NODES = 2 * (CELLS + 1) + (ACROSS + 1) * (DOWN + 1) };
+    static double xyz[3 * NODES], moved[3 * ALL], pressure[ALL], shear[ALL], gap[ALL], state[ALL], stress[ALL];
+    static int64_t offset[ALL + 1], corner[4 * ALL];
+    static int32_t type[ALL], body[ALL];
+    const double side = 3.0 * HALF / ACROSS;
+    const picture_grid grid = { NODES, ALL, xyz, offset, corner, type, body };
+    const picture_field field[] = { { "displacement", 1, 3, 0, moved }, { "pressure", 1, 1, 0, pressure }, { "shear", 1, 1, 0, shear },
+                                    { "gap", 1, 1, 0, gap }, { "friction", 1, 1, 1, state }, { "von_mises", 1, 1, 0, stress } };
+    char name[64];
+
+    for (int b = 0; b < 2; b++)
+        for (int i = 0; i <= CELLS; i++) {
+            const int cell = i + b * CELLS, first = i + b * (CELLS + 1);
+            xyz[3 * first] = -1.5 * HALF + i * c->cell;
+            if (i == CELLS) continue;
+            type[cell] = PICTURE_LINE, body[cell] = b + 1;
+            corner[2 * cell] = first, corner[2 * cell + 1] = first + 1, offset[cell + 1] = 2 * (cell + 1);
+            moved[3 * cell] = found->u[b * N + ALONG + i], moved[3 * cell + 1] = found->u[b * N + i], moved[3 * cell + 2] = 0.0;
+            pressure[cell] = found->pressure[i], shear[cell] = MU * c->p0 * found->shear[i], gap[cell] = found->gap[i];
+            state[cell] = found->state[i], stress[cell] = NAN;
+        }
+    for (int j = 0; j <= DOWN; j++)
+        for (int i = 0; i <= ACROSS; i++) {
+            const int first = 2 * (CELLS + 1) + i + (ACROSS + 1) * j, cell = 2 * CELLS + i + ACROSS * j;
+            xyz[3 * first] = -1.5 * HALF + i * side, xyz[3 * first + 1] = -j * side;
+            if (i == ACROSS || j == DOWN) continue;
+            type[cell] = PICTURE_QUAD, body[cell] = 2;
+            const int64_t around[4] = { first, first + ACROSS + 1, first + ACROSS + 2, first + 1 };
+            for (int k = 0; k < 4; k++) corner[offset[cell] + k] = around[k];
+            offset[cell + 1] = offset[cell] + 4;
+            for (int k = 0; k < 3; k++) moved[3 * cell + k] = NAN;
+            pressure[cell] = shear[cell] = gap[cell] = NAN, state[cell] = -1.0;
+            stress[cell] = von_mises(c, found, xyz[3 * first] + 0.5 * side, (j + 0.5) * side);
+        }
+    snprintf(name, sizeof name, "cattaneo_mindlin_%d.vtu", step);
+    if (picture_vtu(folder, name, &grid, 6, field)) demo_stop("the picture cannot be written");
 }
 
 /* Every fifth cell of the three pushes and of the step back to no push, against the closed form. */
 static void draw_shear(const char *folder, const contact *c, const step_result *found)
 {
     static const int shown[SHOWN] = { 1, 2, 3, 5 };
-    static double x[SHOWN * CELLS], y[SHOWN * CELLS], curve_x[SHOWN * SAMPLES], curve_y[SHOWN * SAMPLES];
-    picture plot = { "shear of two cylinders: pushes of .3, .6, .9 mu P, and back to none", "x / mm", "shear / (mu p0)", "computed",
-                     "Cattaneo, Mindlin", 0, SHOWN * SAMPLES, x, y, curve_x, curve_y };
+    static const char *const name[SHOWN] = { "Q = .3 mu P", "Q = .6 mu P", "Q = .9 mu P", "back to Q = 0" };
+    static double x[SHOWN * (CELLS + 1)], y[SHOWN * (CELLS + 1)], curve_x[SHOWN * SAMPLES], curve_y[SHOWN * SAMPLES];
+    picture plot = { "Shear of two cylinders that are pushed along", "x / mm", "shear / (mu p0)", "computed",
+                     "Cattaneo, Mindlin", 0, SHOWN * SAMPLES, x, y, curve_x, curve_y, name };
 
     for (int s = 0; s < SHOWN; s++) {
         for (int i = 2; i < CELLS; i += 5)
             if (fabs(c->x[i]) < 1.1 * HALF) x[plot.points] = c->x[i], y[plot.points++] = found[shown[s]].shear[i];
+        x[plot.points] = y[plot.points] = NAN, plot.points++; /* the next points begin */
         for (int i = 0; i < SAMPLES; i++) {
             const double at = 1.1 * HALF * (2.0 * i / (SAMPLES - 2) - 1.0);
             curve_x[s * SAMPLES + i] = at, curve_y[s * SAMPLES + i] = mindlin(shown[s], at);
@@ -236,8 +301,8 @@ static void draw_shear(const char *folder, const contact *c, const step_result *
 static void draw_loop(const char *folder, double unit, const step_result *found)
 {
     static double x[STEPS], curve_x[3 * SAMPLES], curve_y[3 * SAMPLES];
-    const picture plot = { "to and fro: the push against the shift of the cylinders", "shift / um", "push / (mu P)", "computed",
-                           "Cattaneo, Mindlin", STEPS, 3 * SAMPLES, x, PART, curve_x, curve_y };
+    const picture plot = { "To and fro: the push against the shift of the cylinders", "shift / um", "push / (mu P)", "computed",
+                           "Cattaneo, Mindlin", STEPS, 3 * SAMPLES, x, PART, curve_x, curve_y, NULL };
 
     for (int step = 0; step < STEPS; step++) x[step] = 1e3 * found[step].shift;
     for (int i = 0; i < SAMPLES; i++) {
@@ -257,7 +322,7 @@ int main(int argc, char **argv)
     const double unit = MU * c.p0 / (0.5 * c.modulus); /* mm: mu p0 / E* */
     feti_problem *problem = NULL;
     feti_info info = { .struct_size = sizeof info };
-    double sums = 0.0;
+    double sums = 0.0, time[STEPS];
     int right = 1;
 
     CALL(feti_problem_create(&problem));
@@ -287,6 +352,8 @@ int main(int argc, char **argv)
         printf("%10.2f%22.6f%14.6f%14.6f\n", PART[step], found[step].missed, 1e3 * found[step].shift, 1e3 * unit * shift(step));
         right = right && found[step].missed <= 5e-3 && fabs(found[step].shift - unit * shift(step)) <= 1e-4 * unit;
     }
+    for (int step = 0; step < STEPS; step++) time[step] = step, draw_step(demo_picture_folder(argc, argv), &c, step, &found[step]);
+    if (picture_pvd(demo_picture_folder(argc, argv), "cattaneo_mindlin", STEPS, time)) demo_stop("the picture cannot be written");
     draw_shear(demo_picture_folder(argc, argv), &c, found);
     draw_loop(demo_picture_folder(argc, argv), unit, found);
     return demo_line("12_cattaneo_mindlin", &info, sums, right && fabs(found[0].pressed - HALF) <= c.cell);

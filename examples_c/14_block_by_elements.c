@@ -15,6 +15,7 @@
 #include "picture.h"
 
 enum { N = 10 /* elements along 1 m */, L = N + 1, NODES = L * L * L, ELEMENTS = N * N * N, ALL = 3 * NODES, OWN = 24 };
+static const double YOUNG = 2.1e5, POISSON = 0.3; /* MN/m^2, - */
 
 /* Equation numbers of all unknowns: from 0, held ones -1, -2, ... */
 typedef struct {
@@ -23,7 +24,8 @@ typedef struct {
 } numbers;
 
 typedef struct {
-    double *u, contact[L * L], clamp[3 * L * L]; /* u by equations; force of the row on each node of the bottom */
+    double *u, contact[L * L], gap[L * L], clamp[3 * L * L]; /* u by equations; force and gap of the row on each node of the bottom */
+    int32_t state[L * L];
     int64_t *piece, pieces;
     feti_info info;
 } answer;
@@ -45,7 +47,7 @@ static numbers *number_unknowns(void)
 /* Stiffness of a cube of edge 1 / N, 24 x 24, 2 x 2 x 2 Gauss points. Corner c lies at bit 0, 1, 2 of c along x, y, z. */
 static void element(double *ke)
 {
-    const double young = 2.1e5, nu = 0.3, mu = young / (2.0 * (1.0 + nu)), la = young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    const double mu = YOUNG / (2.0 * (1.0 + POISSON)), la = 2.0 * mu * POISSON / (1.0 - 2.0 * POISSON);
     const double weight = 1.0 / (8.0 * N);
 
     memset(ke, 0, OWN * OWN * sizeof *ke);
@@ -141,6 +143,8 @@ static void solve(const numbers *all, int64_t pieces, answer *found)
     CALL(feti_solve(problem, &found->info));
     CALL(feti_displacement(problem, body, all->unknowns, found->u));
     CALL(feti_multipliers(problem, FETI_INEQUALITY, N * L, found->contact));
+    CALL(feti_gaps(problem, N * L, found->gap));
+    CALL(feti_active(problem, N * L, found->state));
     CALL(feti_body_held_forces(problem, body, all->held, found->clamp));
     CALL(feti_body_info(problem, body, &facts));
     CALL(feti_body_pieces(problem, body, all->unknowns, found->piece));
@@ -155,32 +159,48 @@ static double at(const numbers *all, const double *u, int a, int d)
     return equation < 0 ? 0.0 : u[equation];
 }
 
-/* The block as VTK XML: displacement, contact force and piece of every node; the clamp is in no piece, -1. */
+/* The piece of an element: an unknown of several pieces has the first of them, an unknown inside a piece has its own. */
+static double piece_of(const numbers *all, const answer *found, const int64_t *corner)
+{
+    int64_t piece = 0;
+    for (int c = 0; c < 8; c++) {
+        const int32_t equation = all->equation[3 * corner[c]];
+        if (equation >= 0 && found->piece[equation] > piece) piece = found->piece[equation];
+    }
+    return (double)piece;
+}
+
+/* The elements with displacements, stresses and pieces, and what the contact does to them. */
 static void draw(const char *folder, const numbers *all, const answer *found)
 {
     static const int around[8] = { 0, 1, 3, 2, 4, 5, 7, 6 }; /* VTK goes around the bottom, then around the top */
-    double *values = demo_array(10 * NODES, sizeof *values);
-    double *xyz = values, *moved = values + 3 * NODES, *force = values + 6 * NODES, *piece = values + 9 * NODES;
-    int64_t *cells = demo_array(10 * ELEMENTS + 1, sizeof *cells);
-    int64_t *offset = cells, *number = cells + ELEMENTS + 1, *corner = cells + 2 * ELEMENTS + 1;
-    const picture_field field[] = { { "displacement", 3, 0, moved }, { "contact_force", 3, 0, force }, { "piece", 1, 1, piece } };
-    const picture_grid grid = { NODES, ELEMENTS, xyz, offset, corner, number, 3, field };
+    double *values = demo_array(12 * NODES + ELEMENTS, sizeof *values);
+    double *xyz = values, *moved = values + 3 * NODES, *force = values + 6 * NODES, *push = values + 9 * NODES;
+    double *gap = values + 10 * NODES, *state = values + 11 * NODES, *piece = values + 12 * NODES;
+    int64_t *cells = demo_array(9 * ELEMENTS + 1, sizeof *cells), *offset = cells, *corner = cells + ELEMENTS + 1;
+    int32_t *types = demo_array(2 * ELEMENTS, sizeof *types), *type = types, *body = types + ELEMENTS;
+    const picture_grid grid = { NODES, ELEMENTS, xyz, offset, corner, type, body };
+    const picture_answer answer = { moved, force, push, gap, state, piece, YOUNG / (2.0 * (1.0 + POISSON)) };
 
     for (int a = 0; a < NODES; a++) {
         const int place[3] = { a % L, a / L % L, a / L / L };
         for (int d = 0; d < 3; d++) xyz[3 * a + d] = (double)place[d] / N, moved[3 * a + d] = at(all, found->u, a, d);
-        if (a < L * L && a % L > 0) force[3 * a + 2] = found->contact[a % L - 1 + N * (a / L)];
-        piece[a] = a % L == 0 ? -1.0 : (double)found->piece[all->equation[3 * a]];
+        gap[a] = NAN, state[a] = -1.0;
+        if (a >= L * L || a % L == 0) continue;
+        const int row = a % L - 1 + N * (a / L); /* on the bottom */
+        force[3 * a + 2] = push[a] = found->contact[row], gap[a] = found->gap[row], state[a] = found->state[row];
     }
     for (int e = 0; e < ELEMENTS; e++) {
-        number[e] = 1;
+        type[e] = PICTURE_HEXAHEDRON, body[e] = 1;
         offset[e + 1] = 8 * (e + 1);
         for (int c = 0; c < 8; c++)
             corner[8 * e + c] = node(e % N + (around[c] & 1), e / N % N + (around[c] >> 1 & 1), e / N / N + (around[c] >> 2));
+        piece[e] = piece_of(all, found, corner + 8 * e);
     }
-    if (picture_vtu(folder, "block_in_pieces.vtu", &grid) != 0) demo_stop("the picture cannot be written");
+    if (picture_mesh(folder, "block_in_pieces.vtu", &grid, &answer) != 0) demo_stop("the picture cannot be written");
     free(values);
     free(cells);
+    free(types);
 }
 
 int main(int argc, char **argv)

@@ -176,7 +176,7 @@ static double draw(const mesh *m, const double *pressure, double p0, const char 
 {
     enum { SAMPLES = 200 };
     double *x = demo_array(m->nodes, sizeof *x), *y = demo_array(m->nodes, sizeof *y), curve_x[SAMPLES + 1], curve_y[SAMPLES + 1], worst = 0.0;
-    picture plot = { title, "x / mm", "pressure / MPa", "nodes of the foot", "Hertz", 0, SAMPLES + 1, x, y, curve_x, curve_y };
+    picture plot = { title, "x / mm", "pressure / MPa", "nodes of the foot", "Hertz", 0, SAMPLES + 1, x, y, curve_x, curve_y, NULL };
 
     for (int k = 0; k < 3 * m->faces[1]; k++) {
         const int32_t node = m->face[1][k];

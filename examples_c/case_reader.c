@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { ELEMENT_NODES_MAX = 20 };
+
 /* A text file in memory and the place where reading stands. */
 typedef struct {
     char *text;
@@ -225,14 +227,41 @@ static fault read_dofs(reader *file, case_data *out)
     return NULL;
 }
 
-static fault read_places(const char *folder, case_data *out)
+/* elements.txt: the number of elements, then body, number of nodes and nodes of each. */
+static fault read_elements(reader *file, case_data *out)
+{
+    case_elements *all = &out->elements;
+    int64_t count, body, nodes, node;
+
+    skip_comments(file, '#');
+    if (!next_integer(file, &count)) return "has no count";
+    all->body = malloc((size_t)(count + 1) * sizeof *all->body);
+    all->ptr = malloc((size_t)(count + 1) * sizeof *all->ptr);
+    all->node = malloc((size_t)(ELEMENT_NODES_MAX * count + 1) * sizeof *all->node);
+    if (!all->body || !all->ptr || !all->node) return "out of memory";
+    all->ptr[0] = 0;
+    for (; all->count < count; all->count++) {
+        if (!next_integer(file, &body) || !next_integer(file, &nodes)) return "ends too early";
+        if (nodes < 1 || nodes > ELEMENT_NODES_MAX || body < 1 || body > out->bodies) return "has an element that is none";
+        all->body[all->count] = (int32_t)body - 1;
+        all->ptr[all->count + 1] = all->ptr[all->count] + nodes;
+        for (int64_t k = all->ptr[all->count]; k < all->ptr[all->count + 1]; k++) {
+            if (!next_integer(file, &node)) return "ends too early";
+            if (node < 1 || node > out->unknowns) return "has a node that is none";
+            all->node[k] = node - 1;
+        }
+    }
+    return NULL;
+}
+
+static fault read_present(const char *folder, const char *name, fault (*read)(reader *, case_data *), case_data *out)
 {
     reader file;
     fault why = NULL;
-    int present = reader_open(&file, folder, "dofs.txt");
+    int present = reader_open(&file, folder, name);
 
     if (present < 0) return "cannot be read";
-    if (present) why = read_dofs(&file, out);
+    if (present) why = read(&file, out);
     reader_close(&file);
     return why;
 }
@@ -283,7 +312,9 @@ static fault read_all(const char *folder, case_data *out, char name[32])
         if ((why = read_vector(folder, name, vector[k].n, vector[k].to))) return why;
     }
     strcpy(name, "dofs.txt");
-    return read_places(folder, out);
+    if ((why = read_present(folder, name, read_dofs, out))) return why;
+    strcpy(name, "elements.txt");
+    return read_present(folder, name, read_elements, out);
 }
 
 int case_read(const char *folder, case_data *out, char *text, int64_t cap)
@@ -317,5 +348,8 @@ void case_free(case_data *data)
     free(data->node);
     free(data->dir);
     free(data->xyz);
+    free(data->elements.body);
+    free(data->elements.ptr);
+    free(data->elements.node);
     memset(data, 0, sizeof *data);
 }

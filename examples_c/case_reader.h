@@ -7,7 +7,8 @@
      H.mtx h.txt         equality rows  H u  = h     (absent: none)
      f.txt               loads (forces), bodies one after the other
      u_ref.txt lambda_ref.txt mu_ref.txt             the solution, where known
-     dofs.txt            node, direction, x, y, z of every unknown, where known */
+     dofs.txt            node, direction, x, y, z of every unknown, where known
+     elements.txt        body and nodes of every element, where known; pictures alone need them */
 #ifndef CASE_READER_H
 #define CASE_READER_H
 
@@ -33,6 +34,14 @@ typedef struct {
     double *null_space;    /* n x r, column-major, NULL where r = 0 */
 } case_body;
 
+/* The elements: number e, of body body[e] from 0, has the nodes node[ptr[e]] .. node[ptr[e+1]-1], counted from 0
+   through all bodies in the order of VTK. */
+typedef struct {
+    int64_t count;
+    int32_t *body;       /* count */
+    int64_t *ptr, *node; /* count + 1, ptr[count] */
+} case_elements;
+
 /* A whole case. An absent file leaves NULL and a size of 0. */
 typedef struct {
     int64_t bodies, unknowns, rows, equalities;
@@ -47,6 +56,7 @@ typedef struct {
     double *mu_ref;         /* equalities: force */
     int32_t *node, *dir;    /* unknowns: node label, direction 1 to 3 */
     double *xyz;            /* 3 x unknowns, column-major: xyz[k + 3 i] */
+    case_elements elements;
 } case_data;
 
 /* Reads the folder into *out. Returns 0; on failure a message in text[0..cap) and -1, and *out is empty. */

@@ -1,15 +1,8 @@
+/* From the rows of a case to its nodes, for pictures. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "picture.h"
-
-enum { SAMPLES = 200 }; /* along each side of a contact surface in space */
-
-/* A row as its node sees it. */
-typedef struct {
-    int64_t node, own, other; /* node of all bodies; the two bodies */
-    double factor;            /* force on the node over that of the row */
-} place;
 
 static int64_t body_of(const case_data *data, int64_t unknown)
 {
@@ -18,113 +11,91 @@ static int64_t body_of(const case_data *data, int64_t unknown)
     return b;
 }
 
-/* Has the row entries on one node only of this body? */
-static int has_one_node(const case_data *data, int32_t dims, int64_t row, int64_t body)
+/* First and last body of a row. */
+typedef struct {
+    int64_t low, high;
+} pair;
+
+static pair pair_of(const case_data *data, int64_t row)
 {
+    pair bodies = { data->bodies, -1 };
+    for (int32_t e = data->contact.row_ptr[row]; e < data->contact.row_ptr[row + 1]; e++) {
+        const int64_t body = body_of(data, data->contact.col[e]);
+        if (body < bodies.low) bodies.low = body;
+        if (body > bodies.high) bodies.high = body;
+    }
+    return bodies;
+}
+
+/* The node of a body in a row, -1 if the row has several; the force on it over that of the row. */
+static int64_t node_of(const case_data *data, int64_t dims, int64_t row, int64_t body, double *factor)
+{
+    double square = 0.0;
     int64_t node = -1;
     for (int32_t e = data->contact.row_ptr[row]; e < data->contact.row_ptr[row + 1]; e++) {
         const int64_t unknown = data->contact.col[e];
         if (body_of(data, unknown) != body) continue;
-        if (node >= 0 && node != unknown / dims) return 0;
-        node = unknown / dims;
+        if (node >= 0 && node != unknown / dims) return -1;
+        node = unknown / dims, square += data->contact.val[e] * data->contact.val[e];
     }
-    return node >= 0;
+    *factor = sqrt(square);
+    return node;
 }
 
-static place place_of(const case_data *data, int32_t dims, int64_t row)
+/* Rows join a node of one body with a face of another: the body that has one node only in every row of the pair. */
+static int64_t body_of_nodes(const case_data *data, int64_t dims, pair bodies)
 {
-    const int32_t from = data->contact.row_ptr[row], to = data->contact.row_ptr[row + 1];
-    place at = { -1, -1, -1, 0.0 };
-    double square = 0.0;
-
-    for (int32_t e = from; e < to && at.own < 0; e++)
-        if (has_one_node(data, dims, row, body_of(data, data->contact.col[e]))) at.own = body_of(data, data->contact.col[e]);
-    for (int32_t e = from; e < to; e++) {
-        const int64_t unknown = data->contact.col[e], body = body_of(data, unknown);
-        if (body != at.own) at.other = body;
-        else at.node = unknown / dims, square += data->contact.val[e] * data->contact.val[e];
+    double factor;
+    for (int64_t row = 0; row < data->rows; row++) {
+        const pair other = pair_of(data, row);
+        if (other.low == bodies.low && other.high == bodies.high && node_of(data, dims, row, bodies.low, &factor) < 0)
+            return bodies.high;
     }
-    at.factor = sqrt(square);
-    return at;
+    return bodies.low;
 }
 
-/* In the plane: half way to the neighbours of the same pair of bodies along x. */
-static void lengths(const case_data *data, int64_t rows, const place *at, double *area)
+/* The elements of the case, by the names that VTK has for them. */
+static picture_grid elements_of(const case_data *data, int64_t dims, int32_t *numbers, const double *xyz)
 {
-    for (int64_t r = 0; r < rows; r++) {
-        const double x = data->xyz[3 * 2 * at[r].node];
-        double left = x, right = x;
-        for (int64_t s = 0; s < rows; s++) {
-            const double y = data->xyz[3 * 2 * at[s].node];
-            if (at[s].own != at[r].own || at[s].other != at[r].other) continue;
-            if (y < x && (left == x || y > left)) left = y;
-            if (y > x && (right == x || y < right)) right = y;
+    const case_elements *all = &data->elements;
+    int32_t *type = numbers, *body = numbers + all->count;
+    for (int64_t e = 0; e < all->count; e++) {
+        const int64_t nodes = all->ptr[e + 1] - all->ptr[e];
+        type[e] = nodes == 4 ? PICTURE_QUAD : nodes == 8 ? PICTURE_HEXAHEDRON
+                : nodes == 10 ? PICTURE_TETRAHEDRON10 : PICTURE_HEXAHEDRON20;
+        body[e] = all->body[e] + 1;
+    }
+    const picture_grid grid = { data->unknowns / dims, all->count, xyz, all->ptr, all->node, type, body };
+    return grid;
+}
+
+int picture_case(const char *folder, const char *name, const case_data *data, double shear_modulus, const double *u,
+                 const double *force, const double *lambda, const double *slack, const int32_t *state)
+{
+    const int64_t dims = data->unknowns > 2 && data->dir[2] == 3 ? 3 : 2, nodes = data->unknowns / dims;
+    double *values = calloc((size_t)(12 * nodes), sizeof *values);
+    int32_t *numbers = malloc((size_t)(2 * data->elements.count + 1) * sizeof *numbers);
+    int status = -1;
+
+    if (values && numbers) {
+        double *xyz = values, *moved = values + 3 * nodes, *pushed = values + 6 * nodes;
+        double *push = values + 9 * nodes, *gap = values + 10 * nodes, *of_row = values + 11 * nodes;
+        const picture_answer answer = { moved, pushed, push, gap, of_row, NULL, shear_modulus };
+        const picture_grid grid = elements_of(data, dims, numbers, xyz);
+
+        for (int64_t i = 0; i < nodes; i++) {
+            gap[i] = NAN, of_row[i] = -1.0;
+            for (int64_t k = 0; k < 3; k++) xyz[3 * i + k] = data->xyz[3 * dims * i + k];
+            for (int64_t k = 0; k < dims; k++) moved[3 * i + k] = u[dims * i + k], pushed[3 * i + k] = force[dims * i + k];
         }
-        area[r] = (right - left) / 2.0;
-    }
-}
-
-/* In space, on a surface z = const: samples of the rectangle around the nodes of a pair of bodies go to the nearest of them. */
-static void areas(const case_data *data, int64_t rows, const place *at, double *area)
-{
-    for (int64_t r = 0; r < rows; r++) area[r] = 0.0;
-    for (int64_t first = 0; first < rows; first++) {
-        double low[2] = { HUGE_VAL, HUGE_VAL }, high[2] = { -HUGE_VAL, -HUGE_VAL };
-        int seen = 0;
-        for (int64_t r = 0; r < rows; r++) {
-            if (at[r].own != at[first].own || at[r].other != at[first].other) continue;
-            seen = seen || r < first;
-            for (int k = 0; k < 2; k++) {
-                const double x = data->xyz[3 * 3 * at[r].node + k];
-                low[k] = fmin(low[k], x), high[k] = fmax(high[k], x);
-            }
+        for (int64_t r = 0; r < data->rows; r++) {
+            double factor;
+            const int64_t node = node_of(data, dims, r, body_of_nodes(data, dims, pair_of(data, r)), &factor);
+            if (node >= 0) push[node] = lambda[r] * factor, gap[node] = slack[r], of_row[node] = state[r];
         }
-        if (seen) continue;
-        const double sample = (high[0] - low[0]) * (high[1] - low[1]) / ((double)SAMPLES * SAMPLES);
-        for (int i = 0; i < SAMPLES * SAMPLES; i++) {
-            const double x = low[0] + (high[0] - low[0]) * (i % SAMPLES + 0.5) / SAMPLES;
-            const double y = low[1] + (high[1] - low[1]) * (i / SAMPLES + 0.5) / SAMPLES;
-            double least = HUGE_VAL;
-            int64_t nearest = first;
-            for (int64_t r = first; r < rows; r++) {
-                const double *p = data->xyz + 3 * 3 * at[r].node;
-                const double square = (p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y);
-                if (at[r].own == at[first].own && at[r].other == at[first].other && square < least) least = square, nearest = r;
-            }
-            area[nearest] += sample;
-        }
+        status = picture_mesh(folder, name, &grid, &answer);
     }
-}
-
-int picture_contact_of(const case_data *data, int32_t dims, const double *lambda, const double *slack, const int32_t *state,
-                       picture_contact *out)
-{
-    const int64_t nodes = data->unknowns / dims, rows = data->rows;
-    place *at = malloc((size_t)(rows + 1) * sizeof *at);
-    double *area = malloc((size_t)(rows + 1) * sizeof *area);
-
-    out->pressure = malloc((size_t)(3 * nodes) * sizeof *out->pressure);
-    if (out->pressure && at && area) {
-        out->gap = out->pressure + nodes, out->state = out->pressure + 2 * nodes;
-        for (int64_t i = 0; i < nodes; i++) out->pressure[i] = 0.0, out->gap[i] = NAN, out->state[i] = -1.0;
-        for (int64_t r = 0; r < rows; r++) at[r] = place_of(data, dims, r);
-        if (dims == 2) lengths(data, rows, at, area);
-        else areas(data, rows, at, area);
-        for (int64_t r = 0; r < rows; r++) {
-            if (at[r].node < 0) continue;
-            out->pressure[at[r].node] = area[r] > 0.0 ? lambda[r] * at[r].factor / area[r] : 0.0;
-            out->gap[at[r].node] = slack[r], out->state[at[r].node] = state[r];
-        }
-    }
-    const int failed = !out->pressure || !at || !area;
-    free(at);
-    free(area);
-    if (failed) picture_contact_free(out);
-    return failed ? -1 : 0;
-}
-
-void picture_contact_free(picture_contact *contact)
-{
-    free(contact->pressure);
-    contact->pressure = contact->gap = contact->state = NULL;
+    free(values);
+    free(numbers);
+    return status;
 }

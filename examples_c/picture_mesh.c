@@ -1,146 +1,202 @@
+/* Elements with their stress, and faces in contact with their pressure, for pictures. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "picture.h"
 
-static const double *node_xyz(const case_data *data, const case_body *body, int32_t dims, int64_t node)
-{
-    return data->xyz + 3 * (body->first + dims * node);
-}
+enum { NODES_MAX = 20, FACES_MAX = 6, FACE_MAX = 8 };
 
-static int mesh_begin(picture_mesh *mesh, int64_t corners, int64_t cells_at_most)
-{
-    mesh->cells = 0;
-    mesh->corners = corners;
-    mesh->corner = malloc((size_t)(corners * cells_at_most + 1) * sizeof *mesh->corner);
-    return mesh->corner ? 0 : -1;
-}
-
-void picture_mesh_free(picture_mesh *mesh)
-{
-    free(mesh->corner);
-    mesh->corner = NULL;
-    mesh->cells = 0;
-}
-
-/* Every node a cell of its own. */
-static int points(const case_body *body, int32_t dims, picture_mesh *mesh)
-{
-    if (mesh_begin(mesh, 1, body->n / dims) != 0) return -1;
-    for (; mesh->cells < body->n / dims; mesh->cells++) mesh->corner[mesh->cells] = mesh->cells;
-    return 0;
-}
-
-int picture_quads(const case_data *data, const case_body *body, int32_t dims, picture_mesh *mesh)
-{
-    const int64_t nodes = body->n / dims;
-    int64_t line = 1, i, j;
-
-    while (line < nodes && node_xyz(data, body, dims, line)[0] == node_xyz(data, body, dims, 0)[0]) line++;
-    if (line < 2 || nodes % line != 0) return points(body, dims, mesh);
-    if (mesh_begin(mesh, 4, nodes) != 0) return -1;
-    for (i = 0; i + 1 < nodes / line; i++)
-        for (j = 0; j + 1 < line; j++) {
-            int64_t *q = mesh->corner + 4 * mesh->cells++;
-            q[0] = i * line + j;
-            q[1] = q[0] + line;
-            q[2] = q[1] + 1;
-            q[3] = q[0] + 1;
-        }
-    return 0;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* The lattice planes of one direction: sorted coordinates without repetition. Coordinates of one plane differ by at most
-   `tolerance`, 1e-6 of the body's length along the axis. */
+/* An element: its faces, by the places of their nodes in it, corners first. */
 typedef struct {
-    int64_t planes;
-    double *at, tolerance;
-} axis;
+    int32_t type, faces, face_type, face_corners, face_nodes;
+    int face[FACES_MAX][FACE_MAX];
+} kind;
 
-static int axis_planes(const case_data *data, const case_body *body, int k, axis *out)
+static const kind KINDS[] = {
+    { PICTURE_QUAD, 4, PICTURE_LINE, 2, 2, { { 0, 1 }, { 1, 2 }, { 2, 3 }, { 3, 0 } } },
+    { PICTURE_HEXAHEDRON, 6, PICTURE_QUAD, 4, 4,
+      { { 0, 3, 2, 1 }, { 4, 5, 6, 7 }, { 0, 1, 5, 4 }, { 1, 2, 6, 5 }, { 2, 3, 7, 6 }, { 3, 0, 4, 7 } } },
+    { PICTURE_TETRAHEDRON10, 4, PICTURE_TRIANGLE6, 3, 6,
+      { { 0, 2, 1, 6, 5, 4 }, { 0, 1, 3, 4, 8, 7 }, { 1, 2, 3, 5, 9, 8 }, { 2, 0, 3, 6, 7, 9 } } },
+    { PICTURE_HEXAHEDRON20, 6, PICTURE_QUAD8, 4, 8,
+      { { 0, 3, 2, 1, 11, 10, 9, 8 }, { 4, 5, 6, 7, 12, 13, 14, 15 }, { 0, 1, 5, 4, 8, 17, 12, 16 },
+        { 1, 2, 6, 5, 9, 18, 13, 17 }, { 2, 3, 7, 6, 10, 19, 14, 18 }, { 3, 0, 4, 7, 11, 16, 15, 19 } } },
+};
+
+static const kind *kind_of(int32_t type)
 {
-    const int64_t nodes = body->n / 3;
-    out->planes = 0;
-    out->at = malloc((size_t)nodes * sizeof *out->at);
-    if (!out->at) return -1;
-    for (int64_t i = 0; i < nodes; i++) out->at[i] = node_xyz(data, body, 3, i)[k];
-    qsort(out->at, (size_t)nodes, sizeof *out->at, ascending);
-    out->tolerance = 1e-6 * (out->at[nodes - 1] - out->at[0]);
-    for (int64_t i = 0; i < nodes; i++)
-        if (out->planes == 0 || out->at[i] > out->at[out->planes - 1] + out->tolerance) out->at[out->planes++] = out->at[i];
-    return 0;
+    const kind *found = KINDS;
+    while (found->type != type) found++;
+    return found;
 }
 
-static int64_t plane_of(const axis *direction, double x)
+/* Gradient in the middle of an element of the shape function of its node i, in the element's own coordinates. */
+static void gradient(int32_t type, int i, double g[3])
 {
-    int64_t low = 0, high = direction->planes - 1;
-    while (low < high) {
-        const int64_t middle = (low + high) / 2;
-        if (x > direction->at[middle] + direction->tolerance) low = middle + 1;
-        else high = middle;
+    /* Quadrilateral and hexahedra: the node's place in [-1, 1]^3; tetrahedron: the corners at the ends of a middle node's edge. */
+    static const int place[NODES_MAX][3] = { { -1, -1, -1 }, { 1, -1, -1 }, { 1, 1, -1 }, { -1, 1, -1 }, { -1, -1, 1 },
+                                             { 1, -1, 1 }, { 1, 1, 1 }, { -1, 1, 1 }, { 0, -1, -1 }, { 1, 0, -1 },
+                                             { 0, 1, -1 }, { -1, 0, -1 }, { 0, -1, 1 }, { 1, 0, 1 }, { 0, 1, 1 },
+                                             { -1, 0, 1 }, { -1, -1, 0 }, { 1, -1, 0 }, { 1, 1, 0 }, { -1, 1, 0 } };
+    static const int ends[10][2] = { { 0, 0 }, { 0, 0 }, { 0, 0 }, { 0, 0 }, { 0, 1 }, { 1, 2 }, { 0, 2 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
+
+    for (int k = 0; k < 3; k++) {
+        if (type == PICTURE_TETRAHEDRON10) /* N = L (2 L - 1), 4 L L', all L = 1/4: the corners have none */
+            g[k] = i < 4 ? 0.0 : (ends[i][1] == k + 1) + (ends[i][0] == k + 1) - (ends[i][0] == 0);
+        else if (type == PICTURE_QUAD)
+            g[k] = k < 2 ? 0.25 * place[i][k] : 0.0;
+        else if (type == PICTURE_HEXAHEDRON)
+            g[k] = 0.125 * place[i][k];
+        else
+            g[k] = (i < 8 ? -0.125 : 0.25) * place[i][k];
     }
-    return low;
 }
 
-/* Takes every cell of the lattice whose nodes are all there; node[] holds -1 where there is none. The order is that of VTK: corners
-   around the bottom and the top; then, where every other plane has mid-side nodes alone, the edges around both and those between. */
-static void lattice_cells(const axis way[3], const int64_t *node, int64_t stride, picture_mesh *mesh)
+/* a = a b^-1 */
+static void divide(double a[3][3], double b[3][3])
 {
-    static const int half[20][3] = { { 0, 0, 0 }, { 2, 0, 0 }, { 2, 2, 0 }, { 0, 2, 0 }, { 0, 0, 2 }, { 2, 0, 2 }, { 2, 2, 2 },
-                                     { 0, 2, 2 }, { 1, 0, 0 }, { 2, 1, 0 }, { 1, 2, 0 }, { 0, 1, 0 }, { 1, 0, 2 }, { 2, 1, 2 },
-                                     { 1, 2, 2 }, { 0, 1, 2 }, { 0, 0, 1 }, { 2, 0, 1 }, { 2, 2, 1 }, { 0, 2, 1 } };
-    for (int64_t i = 0; i + stride < way[0].planes; i += stride)
-        for (int64_t j = 0; j + stride < way[1].planes; j += stride)
-            for (int64_t k = 0; k + stride < way[2].planes; k += stride) {
-                int64_t *cell = mesh->corner + mesh->corners * mesh->cells;
-                int complete = 1;
-                for (int c = 0; c < mesh->corners; c++) {
-                    const int64_t x = i + stride * half[c][0] / 2, y = j + stride * half[c][1] / 2;
-                    cell[c] = node[(x * way[1].planes + y) * way[2].planes + k + stride * half[c][2] / 2];
-                    complete = complete && cell[c] >= 0;
-                }
-                mesh->cells += complete;
+    double inverse[3][3], det = 0.0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            const int p = (j + 1) % 3, q = (j + 2) % 3, r = (i + 1) % 3, s = (i + 2) % 3;
+            inverse[i][j] = b[p][r] * b[q][s] - b[p][s] * b[q][r];
+        }
+    for (int k = 0; k < 3; k++) det += b[0][k] * inverse[k][0];
+    for (int i = 0; i < 3; i++) {
+        const double row[3] = { a[i][0], a[i][1], a[i][2] };
+        for (int j = 0; j < 3; j++)
+            a[i][j] = (row[0] * inverse[0][j] + row[1] * inverse[1][j] + row[2] * inverse[2][j]) / det;
+    }
+}
+
+/* Von Mises stress in the middle of an element, sqrt(3/2 s : s), of the deviator s = 2 G dev(strain); plane strain in the plane. */
+static double von_mises(const picture_grid *grid, int64_t cell, const picture_answer *answer)
+{
+    double place[3][3] = { { 0.0 } }, moved[3][3] = { { 0.0 } }, sum = 0.0;
+
+    for (int64_t k = grid->offset[cell]; k < grid->offset[cell + 1]; k++) {
+        const int64_t node = grid->corner[k];
+        double g[3];
+        gradient(grid->type[cell], (int)(k - grid->offset[cell]), g);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) {
+                place[i][j] += grid->xyz[3 * node + i] * g[j];
+                moved[i][j] += answer->u[3 * node + i] * g[j];
             }
+    }
+    if (grid->type[cell] == PICTURE_QUAD) place[2][2] = 1.0;
+    divide(moved, place); /* the gradient of u */
+    const double mean = (moved[0][0] + moved[1][1] + moved[2][2]) / 3.0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            const double s = answer->shear_modulus * (moved[i][j] + moved[j][i] - (i == j ? 2.0 * mean : 0.0));
+            sum += 1.5 * s * s;
+        }
+    return sqrt(sum);
 }
 
-/* The hexahedra of a body on a known lattice; a lattice far larger than the body is none. */
-static int lattice_mesh(const case_data *data, const case_body *body, const axis way[3], int64_t stride,
-                        picture_mesh *mesh)
+/* Length (times thickness 1) or area of a face with plane corners. */
+static double area_of(const picture_grid *grid, int64_t face, int32_t corners)
 {
-    const int64_t nodes = body->n / 3, places = way[0].planes * way[1].planes * way[2].planes;
-    int64_t *node;
+    const int64_t *node = grid->corner + grid->offset[face];
+    double a[3], b[3], square = 0.0;
 
-    if (places > 8 * nodes) return points(body, 3, mesh);
-    node = malloc((size_t)places * sizeof *node);
-    if (!node || mesh_begin(mesh, stride == 2 ? 20 : 8, places) != 0) {
-        free(node);
-        return -1;
+    for (int k = 0; k < 3; k++) {
+        a[k] = grid->xyz[3 * node[corners == 4 ? 2 : 1] + k] - grid->xyz[3 * node[0] + k];
+        b[k] = corners == 2 ? 0.0 : grid->xyz[3 * node[corners - 1] + k] - grid->xyz[3 * node[corners == 4 ? 1 : 0] + k];
     }
-    for (int64_t i = 0; i < places; i++) node[i] = -1;
-    for (int64_t i = 0; i < nodes; i++) {
-        const double *x = node_xyz(data, body, 3, i);
-        node[(plane_of(&way[0], x[0]) * way[1].planes + plane_of(&way[1], x[1])) * way[2].planes +
-             plane_of(&way[2], x[2])] = i;
+    for (int k = 0; k < 3; k++) {
+        const int p = (k + 1) % 3, q = (k + 2) % 3;
+        const double part = corners == 2 ? a[k] : (a[p] * b[q] - a[q] * b[p]) / 2.0;
+        square += part * part;
     }
-    lattice_cells(way, node, stride, mesh);
-    free(node);
+    return sqrt(square);
+}
+
+/* The grid with faces behind the elements, in arrays of its own. */
+typedef struct {
+    picture_grid grid;
+    int64_t *numbers;
+    int32_t *types;
+} with_faces;
+
+static int add_faces(const picture_grid *elements, const double *state, with_faces *out)
+{
+    const int64_t most = elements->cells * (1 + FACES_MAX), nodes = elements->offset[elements->cells];
+    int64_t cells = elements->cells;
+
+    out->numbers = malloc((size_t)(most + 1 + nodes + elements->cells * FACES_MAX * FACE_MAX) * sizeof *out->numbers);
+    out->types = malloc((size_t)(2 * most + 1) * sizeof *out->types);
+    if (!out->numbers || !out->types) return -1;
+    int64_t *offset = out->numbers, *corner = out->numbers + most + 1;
+    int32_t *type = out->types, *body = out->types + most;
+    for (int64_t c = 0; c < cells; c++) offset[c] = elements->offset[c], type[c] = elements->type[c], body[c] = elements->body[c];
+    for (int64_t k = 0; k < nodes; k++) corner[k] = elements->corner[k];
+    offset[cells] = nodes;
+    for (int64_t c = 0; c < elements->cells; c++) {
+        const kind *element = kind_of(elements->type[c]);
+        for (int f = 0; f < element->faces; f++) {
+            int touches = 1;
+            for (int k = 0; k < element->face_nodes; k++) {
+                const int64_t node = elements->corner[elements->offset[c] + element->face[f][k]];
+                corner[offset[cells] + k] = node;
+                touches = touches && state[node] >= 0.0;
+            }
+            if (!touches) continue;
+            type[cells] = element->face_type, body[cells] = elements->body[c];
+            offset[cells + 1] = offset[cells] + element->face_nodes, cells++;
+        }
+    }
+    const picture_grid grid = { elements->nodes, cells, elements->xyz, offset, corner, type, body };
+    out->grid = grid;
     return 0;
 }
 
-int picture_hexahedra(const case_data *data, const case_body *body, int64_t stride, picture_mesh *mesh)
+static int32_t face_corners(int32_t type)
 {
-    axis way[3] = { { 0, NULL, 0.0 }, { 0, NULL, 0.0 }, { 0, NULL, 0.0 } };
-    int status = 0;
+    return type == PICTURE_LINE ? 2 : type == PICTURE_TRIANGLE6 ? 3 : 4;
+}
 
-    for (int k = 0; k < 3 && status == 0; k++) status = axis_planes(data, body, k, &way[k]);
-    if (status == 0) status = lattice_mesh(data, body, way, stride, mesh);
-    for (int k = 0; k < 3; k++) free(way[k].at);
+/* Pressure of every face behind the elements: its nodes share their forces among their faces by the area of these. NaN elsewhere. */
+static void pressures(const picture_grid *grid, int64_t elements, const double *push, double *around, double *pressure)
+{
+    for (int64_t i = 0; i < grid->nodes; i++) around[i] = 0.0;
+    for (int64_t c = 0; c < grid->cells; c++) {
+        pressure[c] = NAN;
+        for (int64_t k = grid->offset[c]; c >= elements && k < grid->offset[c + 1]; k++)
+            around[grid->corner[k]] += area_of(grid, c, face_corners(grid->type[c]));
+    }
+    for (int64_t c = elements; c < grid->cells; c++) {
+        pressure[c] = 0.0;
+        for (int64_t k = grid->offset[c]; k < grid->offset[c + 1]; k++)
+            pressure[c] += push[grid->corner[k]] / around[grid->corner[k]];
+    }
+}
+
+int picture_mesh(const char *folder, const char *name, const picture_grid *elements, const picture_answer *answer)
+{
+    with_faces all = { { 0, 0, NULL, NULL, NULL, NULL, NULL }, NULL, NULL };
+    int status = add_faces(elements, answer->state, &all);
+    const int64_t cells = all.grid.cells;
+    double *values = malloc((size_t)(3 * cells + elements->nodes + 1) * sizeof *values);
+
+    if (status == 0 && values) {
+        double *stress = values, *pressure = values + cells, *piece = values + 2 * cells, *around = values + 3 * cells;
+        const picture_field field[] = { { "displacement", 0, 3, 0, answer->u }, { "contact_force", 0, 3, 0, answer->force },
+                                        { "gap", 0, 1, 0, answer->gap }, { "contact", 0, 1, 1, answer->state },
+                                        { "von_mises", 1, 1, 0, stress }, { "pressure", 1, 1, 0, pressure },
+                                        { "piece", 1, 1, 1, piece } };
+        for (int64_t c = 0; c < cells; c++) {
+            stress[c] = c < elements->cells ? von_mises(elements, c, answer) : NAN;
+            piece[c] = answer->piece && c < elements->cells ? answer->piece[c] : -1.0;
+        }
+        pressures(&all.grid, elements->cells, answer->push, around, pressure);
+        status = picture_vtu(folder, name, &all.grid, answer->piece ? 7 : 6, field);
+    } else {
+        status = -1;
+    }
+    free(values);
+    free(all.numbers);
+    free(all.types);
     return status;
 }

@@ -1,9 +1,11 @@
+/* An SVG plot of points against curves. */
 #include <math.h>
 #include <stdio.h>
 
 #include "picture.h"
 
-enum { WIDTH = 720, HEIGHT = 480, LEFT = 80, RIGHT = 20, TOP = 48, BOTTOM = 64, TICKS = 6 };
+enum { WIDTH = 720, HEIGHT = 480, LEFT = 80, RIGHT = 20, TOP = 64, BOTTOM = 64, TICKS = 6, COLOURS = 5 };
+static const char *const COLOUR[COLOURS] = { "#1f5fa8", "#c03a1d", "#2a8a4a", "#8a4fb0", "#b8860b" };
 
 /* The plotted range: x from low to high over the width, y from bottom <= 0 to top over the height. */
 typedef struct {
@@ -72,31 +74,46 @@ static void draw_axes(FILE *file, const picture *plot, const frame *range)
             (TOP + HEIGHT - BOTTOM) / 2, plot->y_name);
 }
 
+/* Curve and points of one colour each; if there is one curve alone, its points have another. */
 static void draw_data(FILE *file, const picture *plot, const frame *range)
 {
-    fprintf(file, "<polyline fill=\"none\" stroke=\"#1f5fa8\" stroke-width=\"2\" points=\"");
+    const char *const line = "<polyline fill=\"none\" stroke=\"%s\" stroke-width=\"2\" points=\"";
+    int curve = 0, points = plot->names ? 0 : 1;
+
+    fprintf(file, line, COLOUR[0]);
     for (int64_t i = 0; i < plot->samples; i++)
         if (isnan(plot->curve_x[i])) {
-            if (i + 1 < plot->samples)
-                fprintf(file, "\"/>\n<polyline fill=\"none\" stroke=\"#1f5fa8\" stroke-width=\"2\" points=\"");
+            curve++;
+            if (i + 1 < plot->samples) fprintf(file, "\"/>\n"), fprintf(file, line, COLOUR[curve % COLOURS]);
         } else {
             fprintf(file, "%.2f,%.2f ", place_x(range, plot->curve_x[i]), place_y(range, plot->curve_y[i]));
         }
-    fprintf(file, "\"/>\n<g fill=\"#c03a1d\">\n");
+    fprintf(file, "\"/>\n");
     for (int64_t i = 0; i < plot->points; i++)
-        fprintf(file, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3.2\"/>\n", place_x(range, plot->x[i]),
-                place_y(range, plot->y[i]));
-    fprintf(file, "</g>\n");
+        if (isnan(plot->x[i])) points++;
+        else fprintf(file, "<circle fill=\"%s\" cx=\"%.2f\" cy=\"%.2f\" r=\"3.2\"/>\n", COLOUR[points % COLOURS],
+                     place_x(range, plot->x[i]), place_y(range, plot->y[i]));
 }
 
-/* Below the axis, beside its name, where no point lies. */
+/* Points and curve below the axis, beside its name, where no point lies; names of several curves above the axes. */
 static void draw_legend(FILE *file, const picture *plot)
 {
     const int y = HEIGHT - 18, line = WIDTH - RIGHT - 170;
-    fprintf(file, "<circle cx=\"%d\" cy=\"%d\" r=\"3.2\" fill=\"#c03a1d\"/><text x=\"%d\" y=\"%d\">%s</text>\n",
-            LEFT + 4, y - 4, LEFT + 14, y, plot->points_name);
-    fprintf(file, "<line x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\" stroke=\"#1f5fa8\" stroke-width=\"2\"/>"
-            "<text x=\"%d\" y=\"%d\">%s</text>\n", line, y - 4, line + 24, y - 4, line + 32, y, plot->curve_name);
+    int curves = plot->names ? 1 : 0;
+
+    fprintf(file, "<circle cx=\"%d\" cy=\"%d\" r=\"3.2\" fill=\"%s\"/><text x=\"%d\" y=\"%d\">%s</text>\n",
+            LEFT + 4, y - 4, curves ? "#444" : COLOUR[1], LEFT + 14, y, plot->points_name);
+    fprintf(file, "<line x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\" stroke=\"%s\" stroke-width=\"2\"/>"
+            "<text x=\"%d\" y=\"%d\">%s</text>\n", line, y - 4, line + 24, y - 4, curves ? "#444" : COLOUR[0], line + 32, y,
+            plot->curve_name);
+    if (!curves) return;
+    for (int64_t i = 0; i + 1 < plot->samples; i++) curves += isnan(plot->curve_x[i]) != 0;
+    for (int k = 0; k < curves; k++) {
+        const int x = LEFT + k * (WIDTH - LEFT - RIGHT) / curves;
+        fprintf(file, "<line x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\" stroke=\"%s\" stroke-width=\"2\"/>"
+                "<circle cx=\"%d\" cy=\"%d\" r=\"3.2\" fill=\"%s\"/><text x=\"%d\" y=\"%d\">%s</text>\n", x, TOP - 17, x + 24,
+                TOP - 17, COLOUR[k % COLOURS], x + 12, TOP - 17, COLOUR[k % COLOURS], x + 32, TOP - 12, plot->names[k]);
+    }
 }
 
 int picture_svg(const char *folder, const char *name, const picture *plot)

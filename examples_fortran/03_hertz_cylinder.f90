@@ -88,7 +88,8 @@ program hertz_cylinder
     call feti_reaction(problem, FETI_INEQUALITY, b, force(first(b):last(b)))
   end do
   call feti_gaps(problem, slack)  ! open gaps (mm)
-  call picture_case(picture_folder(), 'hertz_cylinder_fortran.vtu', host, [1, 1], u, force, lambda, slack, state)
+  call picture_case(picture_folder(), 'hertz_cylinder_fortran.vtu', host, young / (2 * (1 + poisson)), u, force, &
+    lambda, slack, state)
   call feti_problem_destroy(problem)
 
   error = max(demo_error(lambda, host%lambda_ref), demo_error(u, host%u_ref))

@@ -26,7 +26,7 @@ program cattaneo_and_mindlin
   use demo
   use feti_contact
   use picture, only: picture_svg
-  use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+  use vtu_picture
   implicit none
   integer, parameter :: dp = kind(1.0d0)
   integer, parameter :: cells = 400, far = cells + 1, n = 2 * far, steps = 12, samples = 401
@@ -46,6 +46,8 @@ program cattaneo_and_mindlin
     real(dp) :: shear(cells)             ! over mu p0
     real(dp) :: missed, size             ! root mean square over 2a of its error, and of the closed form
     real(dp) :: pressed, stuck, shift, sums   ! half-widths of contact and stick, mm; shift, mm; relative error of both sums
+    real(dp) :: pressure(cells), gap(cells), u(n, 2)   ! MPa, mm, mm: upper cylinder, lower one
+    integer :: state(cells)                   ! FETI_FRICTION_OPEN, _STICK, _SLIP, ..
   end type
 
   type(feti_problem) :: problem
@@ -85,6 +87,10 @@ program cattaneo_and_mindlin
     print '(f10.2, f22.6, 2f14.6)', part(step), found(step)%missed, 1e3_dp * found(step)%shift, 1e3_dp * unit * shift(step)
     right = right .and. found(step)%missed <= 5e-3_dp .and. abs(found(step)%shift - unit * shift(step)) <= 1e-4_dp * unit
   end do
+  do step = 1, steps
+    call draw_step(step, found(step))
+  end do
+  call picture_pvd(picture_folder(), 'cattaneo_mindlin_fortran', steps)
   call draw_shear
   call draw_loop
   call demo_line('12_cattaneo_mindlin', info, sums, right .and. abs(found(1)%pressed - half) <= cell)
@@ -243,7 +249,7 @@ contains
   subroutine solve_step(step, out)
     integer, intent(in) :: step
     type(step_result), intent(out) :: out
-    real(dp) :: f(n), u(n), lambda_n(cells), lambda_t(cells), closed(cells), push
+    real(dp) :: f(n), lambda_n(cells), lambda_t(cells), closed(cells), push
     integer :: k
 
     push = part(step) * mu * load
@@ -255,16 +261,98 @@ contains
     call feti_friction_commit(problem)   ! the step is accepted: slips of the next one are counted from here
     call feti_multipliers(problem, FETI_INEQUALITY, lambda_n)
     call feti_multipliers(problem, FETI_TANGENTIAL, lambda_t)
-    call feti_displacement(problem, 1, u)
+    call feti_gaps(problem, out%gap)
+    call feti_friction_states(problem, out%state)
+    do k = 1, 2
+      call feti_displacement(problem, k, out%u(:, k))
+    end do
     closed = [(mindlin(step, x(k)), k=1, cells)]
+    out%pressure = lambda_n / cell
     out%shear = lambda_t / cell / (mu * p0)
     out%missed = sqrt(sum((out%shear - closed)**2) * cell / (2 * half))
     out%size = sqrt(sum(closed**2) * cell / (2 * half))
     out%pressed = 0.5_dp * info%active * cell
     out%stuck = 0.5_dp * info%sticking * cell
-    out%shift = u(n)   ! the other far point is held
+    out%shift = out%u(n, 1)   ! the other far point is held
     out%sums = max(abs(sum(lambda_n) - load), abs(sum(lambda_t) - push)) / load
   end subroutine
+
+  !> Von Mises stress in the lower half plane, at depth below `across`: each cell acts as a force F of Flamant at its middle, whose
+  !> stress at the distance d is -(2 / pi) (F.d) d d' / |d|^4; plane strain. (MPa)
+  pure real(dp) function von_mises(of, across, depth)
+    type(step_result), intent(in) :: of
+    real(dp), intent(in) :: across, depth
+    real(dp) :: d(cells), factor(cells), xx, yy, zz, xz
+
+    d = across - x
+    factor = -2 / pi * (of%shear * mu * p0 * cell * d + of%pressure * cell * depth) / (d**2 + depth**2)**2
+    xx = sum(factor * d**2)
+    zz = sum(factor * depth**2)
+    xz = sum(factor * d * depth)
+    yy = poisson * (xx + zz)
+    von_mises = sqrt(0.5_dp * ((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) + 3 * xz**2)
+  end function
+
+  !> Cells of both surfaces with what the contact does to them, and squares of the lower half plane with their stress.
+  subroutine draw_step(step, of)
+    integer, intent(in) :: step
+    type(step_result), intent(in) :: of
+    integer, parameter :: across = 75, down = 40, all = 2 * cells + across * down
+    real(dp), parameter :: side = 3 * half / across
+    type(picture_grid) :: grid
+    character(len=60) :: name
+    real(dp), allocatable :: moved(:, :), stress(:, :)
+    integer :: unit, b, i, j, c, first
+
+    allocate (grid%xyz(3, 2 * (cells + 1) + (across + 1) * (down + 1)), source=0.0_dp)
+    allocate (grid%corner(20, all), source=0)
+    allocate (grid%kind(all), grid%body(all))
+    allocate (moved(3, all), stress(1, all), source=nan_of())
+    do b = 1, 2
+      do i = 0, cells
+        first = i + 1 + (b - 1) * (cells + 1)
+        grid%xyz(1, first) = -1.5_dp * half + i * cell
+        if (i == cells) cycle
+        c = i + 1 + (b - 1) * cells
+        grid%kind(c) = picture_line
+        grid%body(c) = b
+        grid%corner(:2, c) = [first, first + 1]
+        moved(:, c) = [of%u(far + i + 1, b), of%u(i + 1, b), 0.0_dp]
+      end do
+    end do
+    do j = 0, down
+      do i = 0, across
+        first = 2 * (cells + 1) + 1 + i + (across + 1) * j
+        grid%xyz(:2, first) = [-1.5_dp * half + i * side, -j * side]
+        if (i == across .or. j == down) cycle
+        c = 2 * cells + 1 + i + across * j
+        grid%kind(c) = picture_quad
+        grid%body(c) = 2
+        grid%corner(:4, c) = [first, first + across + 1, first + across + 2, first + 1]
+        stress(1, c) = von_mises(of, grid%xyz(1, first) + side / 2, (j + 0.5_dp) * side)
+      end do
+    end do
+    write (name, '(a, i0, a)') 'cattaneo_mindlin_fortran_', step - 1, '.vtu'
+    call vtu_begin(picture_folder(), trim(name), grid, unit)
+    call vtu_next(unit, grid)
+    call vtu_doubles(unit, 'displacement', moved)
+    call vtu_doubles(unit, 'pressure', on_both(of%pressure, all))
+    call vtu_doubles(unit, 'shear', on_both(mu * p0 * of%shear, all))
+    call vtu_doubles(unit, 'gap', on_both(of%gap, all))
+    call vtu_integers(unit, 'friction', [of%state, of%state, [(-1, c=2 * cells + 1, all)]])
+    call vtu_doubles(unit, 'von_mises', stress)
+    call vtu_end(unit)
+  end subroutine
+
+  !> Numbers of the cells of either surface, NaN for the other cells.
+  function on_both(surface, all) result(values)
+    real(dp), intent(in) :: surface(:)
+    integer, intent(in) :: all
+    real(dp) :: values(1, all)
+
+    values = nan_of()
+    values(1, :2 * cells) = [surface, surface]
+  end function
 
   !> Every fifth cell of the three pushes and of the step back to no push, against the closed form.
   subroutine draw_shear
@@ -278,12 +366,13 @@ contains
       curve_x(:, s) = [(1.1_dp * half * (2 * k / (samples - 2.0_dp) - 1), k=0, samples - 1)]
       curve_y(:, s) = [(mindlin(shown(s), curve_x(k, s)), k=1, samples)]
     end do
-    curve_x(samples, :) = ieee_value(1.0_dp, ieee_quiet_nan)   ! the next curve begins
+    curve_x(samples, :) = nan_of()   ! the next curve begins
     curve_y(samples, :) = curve_x(samples, :)
     call picture_svg(picture_folder(), 'cattaneo_mindlin_shear_fortran.svg', &
-      'shear of two cylinders: pushes of .3, .6, .9 mu P, and back to none', 'x / mm', 'shear / (mu p0)', 'Cattaneo, Mindlin', &
-      [(pack(x, is_shown), s=1, 4)], [(pack(found(shown(s))%shear, is_shown), s=1, 4)], &
-      reshape(curve_x, [4 * samples]), reshape(curve_y, [4 * samples]))
+      'Shear of two cylinders that are pushed along', 'x / mm', 'shear / (mu p0)', 'Cattaneo, Mindlin', &
+      [(pack(x, is_shown), nan_of(), s=1, 4)], [(pack(found(shown(s))%shear, is_shown), nan_of(), s=1, 4)], &
+      reshape(curve_x, [4 * samples]), reshape(curve_y, [4 * samples]), &
+      [character(len=13) :: 'Q = .3 mu P', 'Q = .6 mu P', 'Q = .9 mu P', 'back to Q = 0'])
   end subroutine
 
   !> Push against shift: the steps, and the closed form from turn to turn.
@@ -298,7 +387,7 @@ contains
       shift_back(k) = 1e3_dp * unit * (shift_by(0.9_dp) - 2 * shift_by((0.9_dp - back(k)) / 2))
     end do
     call picture_svg(picture_folder(), 'cattaneo_mindlin_loop_fortran.svg', &
-      'to and fro: the push against the shift of the cylinders', 'shift / um', 'push / (mu P)', 'Cattaneo, Mindlin', &
+      'To and fro: the push against the shift of the cylinders', 'shift / um', 'push / (mu P)', 'Cattaneo, Mindlin', &
       1e3_dp * found%shift, part, [shift_to, shift_back, -shift_back], [to, back, -back])
   end subroutine
 

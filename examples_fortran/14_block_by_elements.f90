@@ -8,16 +8,19 @@
 !> forces of the clamp, which feti_body_held_forces returns, and the forces of the obstacle balance the load.
 program block_by_elements
   use demo, only: demo_error, demo_line, demo_stop, demo_value, picture_folder
-  use vtu_picture, only: vtu_begin, vtu_cells, vtu_doubles, vtu_end, vtu_integers, vtu_next
+  use vtu_picture, only: nan_of, picture_answer, picture_grid, picture_hexahedron, picture_mesh
   use feti_contact
   implicit none
   integer, parameter :: dp = kind(1.0d0)
   integer, parameter :: n = 10, line = n + 1, nodes = line**3, elements = n**3, own = 24
 
-  !> Answer of one solve: u by equations, forces of the rows on the nodes of the bottom, of the clamp, piece of every equation.
+  real(dp), parameter :: young = 2.1e5_dp, poisson = 0.3_dp   ! MN/m^2, -
+
+  !> Answer of one solve: u by equations; forces, gaps, states of the rows on the nodes of the bottom; forces of the clamp, piece of
+  !> every equation.
   type :: answer
-    real(dp), allocatable :: u(:), contact(:), clamp(:)
-    integer, allocatable :: piece(:)
+    real(dp), allocatable :: u(:), contact(:), gap(:), clamp(:)
+    integer, allocatable :: piece(:), state(:)
     integer :: pieces
     type(feti_info) :: info
   end type
@@ -178,7 +181,8 @@ contains
     type(feti_body_facts) :: facts
     integer :: body
 
-    allocate (found%u(unknowns), found%contact(n * line), found%clamp(held), found%piece(unknowns))
+    allocate (found%u(unknowns), found%contact(n * line), found%gap(n * line), found%state(n * line), found%clamp(held), &
+      found%piece(unknowns))
     call feti_problem_create(problem)
     call feti_set(problem, 'pieces', pieces)
     call feti_body_add(problem, unknowns, body)
@@ -188,6 +192,8 @@ contains
     call feti_solve(problem, found%info)
     call feti_displacement(problem, body, found%u)
     call feti_multipliers(problem, FETI_INEQUALITY, found%contact)
+    call feti_gaps(problem, found%gap)
+    call feti_active(problem, found%state)
     call feti_body_held_forces(problem, body, found%clamp)
     call feti_body_info(problem, body, facts)
     call feti_body_pieces(problem, body, found%piece)
@@ -204,36 +210,46 @@ contains
     if (equation(d, a) > 0) at = u(equation(d, a))
   end function
 
-  !> The block as VTK XML: displacement, contact force and piece of every node; the clamp is in no piece, -1.
+  !> The elements with displacements, stresses and pieces, and what the contact does to them.
   subroutine draw(folder, found)
     character(len=*), intent(in) :: folder
     type(answer), intent(in) :: found
     integer, parameter :: around(8) = [0, 1, 3, 2, 4, 5, 7, 6] ! VTK goes around the bottom, then around the top
-    integer :: unit, a, c, d, e, j, piece(nodes), cell(8, elements)
-    real(dp) :: xyz(3, nodes), moved(3, nodes), force(3, nodes)
+    type(picture_grid) :: grid
+    type(picture_answer) :: shown
+    integer :: a, c, d, e, row
 
-    force = 0
-    do j = 1, line ! line by line of nodes, the first `line` of which are those of the bottom
-      force(3, line * (j - 1) + 2:line * j) = found%contact(n * (j - 1) + 1:n * j)
-    end do
-    piece = -1
+    allocate (grid%xyz(3, nodes), shown%u(3, nodes), shown%push(nodes), shown%gap(nodes), shown%state(nodes))
+    allocate (grid%corner(20, elements), grid%kind(elements), grid%body(elements), shown%piece(elements))
+    allocate (shown%force(3, nodes), source=0.0_dp)
+    shown%shear_modulus = young / (2 * (1 + poisson))
     do a = 1, nodes
-      xyz(:, a) = place(a)
-      moved(:, a) = [(at(found%u, a, d), d = 1, 3)]
-      if (equation(1, a) > 0) piece(a) = found%piece(equation(1, a)) - 1
+      grid%xyz(:, a) = place(a)
+      shown%u(:, a) = [(at(found%u, a, d), d = 1, 3)]
     end do
+    shown%push = 0
+    shown%gap = nan_of()
+    shown%state = -1
+    do row = 1, n * line ! on the bottom, whose lines of nodes begin with a held one
+      a = row + 1 + (row - 1) / n
+      shown%force(3, a) = found%contact(row)
+      shown%push(a) = found%contact(row)
+      shown%gap(a) = found%gap(row)
+      shown%state(a) = found%state(row)
+    end do
+    grid%corner = 0
+    grid%kind = picture_hexahedron
+    grid%body = 1
     do e = 1, elements
-      cell(:, e) = [(corner(e, around(c)) - 1, c = 1, 8)]
+      grid%corner(:8, e) = [(corner(e, around(c)), c = 1, 8)]
+      ! An unknown of several pieces has the first of them, an unknown inside a piece has its own.
+      shown%piece(e) = 0
+      do c = 1, 8
+        d = equation(1, grid%corner(c, e))
+        if (d > 0) shown%piece(e) = max(shown%piece(e), found%piece(d) - 1)
+      end do
     end do
-    call vtu_begin(folder, 'block_in_pieces_fortran.vtu', nodes, elements, unit)
-    call vtu_doubles(unit, 'Points', 3, xyz)
-    call vtu_cells(unit, cell)
-    call vtu_doubles(unit, 'displacement', 3, moved)
-    call vtu_doubles(unit, 'contact_force', 3, force)
-    call vtu_integers(unit, 'piece', piece)
-    call vtu_next(unit)
-    call vtu_integers(unit, 'body', [(1, e = 1, elements)])
-    call vtu_end(unit)
+    call picture_mesh(folder, 'block_in_pieces_fortran.vtu', grid, shown)
   end subroutine
 
 end program

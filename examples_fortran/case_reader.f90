@@ -5,6 +5,7 @@
 !> B.mtx, c.txt         contact rows B u <= c (c: gaps, length);  H.mtx, h.txt: equality rows H u = h, where present
 !> f.txt                loads (force);  u_ref.txt, lambda_ref.txt, mu_ref.txt: the reference solution
 !> dofs.txt             node, direction, x, y, z of every unknown, where known
+!> elements.txt         body and nodes of every element, where known; pictures alone need them
 !>
 !> Unknowns are the bodies one after the other; every index counts from 1.
 module case_reader
@@ -39,6 +40,8 @@ module case_reader
     real(dp), allocatable :: f(:), c(:), h(:), u_ref(:), lambda_ref(:), mu_ref(:)
     integer, allocatable :: node(:), dir(:)
     real(dp), allocatable :: xyz(:, :)
+    !> 20 x elements: nodes through all bodies, in the order of VTK, behind them 0.
+    integer, allocatable :: element(:, :), element_body(:)
   end type
 
 contains
@@ -71,6 +74,7 @@ contains
       allocate (this%equality%col(0), this%equality%val(0), this%h(0), this%mu_ref(0))
     end if
     call read_dofs(folder // 'dofs.txt', this)
+    call read_elements(folder // 'elements.txt', this)
   end subroutine
 
   !> y = A x.
@@ -232,6 +236,29 @@ contains
       read (unit, *) this%node(i), this%dir(i), this%xyz(:, i)
     end do
     close (unit)
+  end subroutine
+
+  !> The number of elements, then body, number of nodes and nodes of each.
+  subroutine read_elements(path, this)
+    character(len=*), intent(in) :: path
+    type(contact_case), intent(inout) :: this
+    character(len=200) :: line
+    integer :: unit, elements, nodes, e
+
+    elements = 0
+    if (exists(path)) then
+      call open_text(path, unit)
+      call skip_header(unit)
+      read (unit, *) elements
+    end if
+    allocate (this%element(20, elements), source=0)
+    allocate (this%element_body(elements))
+    do e = 1, elements
+      read (unit, '(a)') line
+      read (line, *) this%element_body(e), nodes
+      read (line, *) this%element_body(e), nodes, this%element(:nodes, e)
+    end do
+    if (elements > 0) close (unit)
   end subroutine
 
   !> Moves behind the lines that start with % or #; symmetric: one of them says so.

@@ -1,4 +1,4 @@
-!> Pictures of the answer: an SVG plot of points against a curve.
+!> Pictures of the answer: an SVG plot of points against curves.
 module picture
   use case_reader, only: dp
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
@@ -7,7 +7,8 @@ module picture
   public :: picture_svg, open_picture
 
   ! The sheet and its margins, in SVG units.
-  real(dp), parameter :: width = 720, height = 480, left = 80, right = 20, top = 48, bottom = 64
+  real(dp), parameter :: width = 720, height = 480, left = 80, right = 20, top = 64, bottom = 64
+  character(len=7), parameter :: colours(5) = ['#1f5fa8', '#c03a1d', '#2a8a4a', '#8a4fb0', '#b8860b']
 
   !> The plotted range: x from low to high over the width, y from bottom <= 0 to ceiling over the height.
   type :: frame
@@ -17,16 +18,18 @@ module picture
 contains
 
   !> Writes folder/name: points (x, y), the curve (curve_x, curve_y) called theory, title, names of the axes with units. Behind a
-  !> NaN another curve begins.
-  subroutine picture_svg(folder, name, title, x_name, y_name, theory, x, y, curve_x, curve_y)
+  !> NaN the next curve begins, and the next points; each curve and its points have a colour of their own. names: of the curves,
+  !> if there are several.
+  subroutine picture_svg(folder, name, title, x_name, y_name, theory, x, y, curve_x, curve_y, names)
     character(len=*), intent(in) :: folder, name, title, x_name, y_name, theory
     real(dp), intent(in) :: x(:), y(:), curve_x(:), curve_y(:)
-    character(len=*), parameter :: line = '<polyline fill="none" stroke="#1f5fa8" stroke-width="2" points="'
+    character(len=*), intent(in), optional :: names(:)
     type(frame) :: range
     real(dp) :: step
-    integer :: unit, i
+    integer :: unit, i, k
 
-    associate (all_x => [x, pack(curve_x, .not. ieee_is_nan(curve_x))], all_y => [y, pack(curve_y, .not. ieee_is_nan(curve_y))])
+    associate (all_x => [pack(x, .not. ieee_is_nan(x)), pack(curve_x, .not. ieee_is_nan(curve_x))], &
+               all_y => [pack(y, .not. ieee_is_nan(y)), pack(curve_y, .not. ieee_is_nan(curve_y))])
       range = frame(minval(all_x), maxval(all_x), min(0.0_dp, minval(all_y)), maxval(all_y))
     end associate
     step = round_step(range%ceiling - range%bottom)
@@ -39,22 +42,57 @@ contains
     call write_text(unit, (left + width - right) / 2, height - 18, x_name)
     write (unit, '(3a)') '<text transform="translate(20 232) rotate(-90)" text-anchor="middle">', y_name, '</text>'
     call draw_axes(unit, range)
-    write (unit, '(a)') line
+    k = 1
+    call begin_curve(unit, k)
     do i = 1, size(curve_x)
       if (.not. ieee_is_nan(curve_x(i))) then
         write (unit, '(f0.2, a, f0.2)') place_x(range, curve_x(i)), ',', place_y(range, curve_y(i))
       else if (i < size(curve_x)) then
-        write (unit, '(a)') '"/>', line
+        k = k + 1
+        write (unit, '(a)') '"/>'
+        call begin_curve(unit, k)
       end if
     end do
     write (unit, '(a)') '"/>'
+    k = merge(1, 2, present(names))   ! the points of a curve alone have another colour
     do i = 1, size(x)
-      write (unit, '(a, f0.2, a, f0.2, a)') '<circle fill="#c03a1d" r="3.2" cx="', place_x(range, x(i)), &
-        '" cy="', place_y(range, y(i)), '"/>'
+      if (ieee_is_nan(x(i))) then
+        k = k + 1
+      else
+        call draw_point(unit, k, place_x(range, x(i)), place_y(range, y(i)))
+      end if
     end do
-    write (unit, '(a)') '<text x="80" y="462" fill="#c03a1d">points: computed</text>', &
-      '<text x="700" y="462" text-anchor="end" fill="#1f5fa8">curve: ' // theory // '</text>', '</svg>'
+    if (present(names)) then
+      write (unit, '(a)') '<text x="80" y="462">points: computed</text>', &
+        '<text x="700" y="462" text-anchor="end">curves: ' // theory // '</text>'
+      do k = 1, size(names)
+        associate (at => left + (k - 1) * (width - left - right) / size(names))
+          call begin_curve(unit, k)
+          write (unit, '(f0.1, a, f0.1, a)') at, ',47 ', at + 24, ',47"/>'
+          call draw_point(unit, k, at + 12, 47.0_dp)
+          write (unit, '(a, f0.1, 3a)') '<text y="52" x="', at + 32, '">', trim(names(k)), '</text>'
+        end associate
+      end do
+    else
+      write (unit, '(a)') '<text x="80" y="462" fill="#c03a1d">points: computed</text>', &
+        '<text x="700" y="462" text-anchor="end" fill="#1f5fa8">curve: ' // theory // '</text>'
+    end if
+    write (unit, '(a)') '</svg>'
     close (unit)
+  end subroutine
+
+  !> Then come the points of the curve and '"/>'.
+  subroutine begin_curve(unit, k)
+    integer, intent(in) :: unit, k
+
+    write (unit, '(3a)') '<polyline fill="none" stroke="', colours(mod(k - 1, 5) + 1), '" stroke-width="2" points="'
+  end subroutine
+
+  subroutine draw_point(unit, k, x, y)
+    integer, intent(in) :: unit, k
+    real(dp), intent(in) :: x, y
+
+    write (unit, '(3a, f0.2, a, f0.2, a)') '<circle fill="', colours(mod(k - 1, 5) + 1), '" r="3.2" cx="', x, '" cy="', y, '"/>'
   end subroutine
 
   !> Grid lines at round steps, with their numbers.

@@ -5,109 +5,157 @@ module vtu_picture
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
   implicit none
   private
-  public :: picture_case, contact_of_nodes, vtu_begin, vtu_cells, vtu_doubles, vtu_integers, vtu_next, vtu_end
+  public :: picture_case, picture_mesh, picture_pvd, picture_grid, picture_answer, nan_of
+  public :: vtu_begin, vtu_doubles, vtu_integers, vtu_next, vtu_end
 
-  !> Contact results at the nodes: every row belongs to one node, that of the body which has only one node in it.
-  type :: contact_of_nodes
-    !> Force of the row over the area (in the plane: length) that belongs to the node; 0 without a row.
-    real(dp), allocatable :: pressure(:)
-    !> Open gap, length; NaN without a row.
-    real(dp), allocatable :: gap(:)
-    !> FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK or FETI_ROW_UNKNOWN; -1 without a row.
-    integer, allocatable :: state(:)
+  !> The numbers that VTK has for cells.
+  integer, parameter, public :: picture_line = 3, picture_quad = 9, picture_hexahedron = 12, picture_triangle6 = 22, &
+    picture_quad8 = 23, picture_tetrahedron10 = 24, picture_hexahedron20 = 25
+
+  !> The cells of all bodies.
+  type :: picture_grid
+    real(dp), allocatable :: xyz(:, :)      ! 3 x nodes, length, undeformed
+    integer, allocatable :: corner(:, :)    ! 20 x cells: nodes from 1 in the order of VTK, behind them 0
+    integer, allocatable :: kind(:), body(:)
   end type
 
-  ! Samples along each side of a contact surface in space.
-  integer, parameter :: samples = 200
-  ! Nodes of a hexahedron in half steps of a lattice, in the order of VTK: corners around the bottom and the top, then the middles
-  ! of the edges around both and of those between.
-  integer, parameter :: half(3, 20) = reshape([0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0, 0, 0, 2, 2, 0, 2, 2, 2, 2, 0, 2, 2, &
-    1, 0, 0, 2, 1, 0, 1, 2, 0, 0, 1, 0, 1, 0, 2, 2, 1, 2, 1, 2, 2, 0, 1, 2, 0, 0, 1, 2, 0, 1, 2, 2, 1, 0, 2, 1], [3, 20])
+  !> What a solve has come to, for all bodies.
+  type :: picture_answer
+    real(dp), allocatable :: u(:, :), force(:, :)   ! 3 x nodes: displacement, length; contact force
+    real(dp), allocatable :: push(:), gap(:)        ! nodes: force and gap of the row at the node; NaN without a row
+    integer, allocatable :: state(:)                ! nodes: FETI_ROW_OPEN, ..; -1 without a row
+    integer, allocatable :: piece(:)                ! cells: the piece of a body that is cut, from 0; not allocated: no body is
+    real(dp) :: shear_modulus = 0
+  end type
+
+  ! The faces of elements, by the places of their nodes: corners, then the middles of the edges.
+  integer, parameter :: face_of_quad(2, 4) = reshape([1, 2, 2, 3, 3, 4, 4, 1], [2, 4])
+  integer, parameter :: face_of_tetrahedron(6, 4) = reshape([1, 3, 2, 7, 6, 5, 1, 2, 4, 5, 9, 8, 2, 3, 4, 6, 10, 9, &
+    3, 1, 4, 7, 8, 10], [6, 4])
+  integer, parameter :: face_of_hexahedron(8, 6) = reshape([1, 4, 3, 2, 12, 11, 10, 9, 5, 6, 7, 8, 13, 14, 15, 16, &
+    1, 2, 6, 5, 9, 18, 13, 17, 2, 3, 7, 6, 10, 19, 14, 18, 3, 4, 8, 7, 11, 20, 15, 19, 4, 1, 5, 8, 12, 17, 16, 20], [8, 6])
+  ! Quadrilateral and hexahedra: the nodes' places in [-1, 1]^3. Tetrahedron: the corners at the ends of a middle node's edge.
+  integer, parameter :: place(3, 20) = reshape([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, 1, -1, 1, 1, 1, 1, &
+    -1, 1, 1, 0, -1, -1, 1, 0, -1, 0, 1, -1, -1, 0, -1, 0, -1, 1, 1, 0, 1, 0, 1, 1, -1, 0, 1, -1, -1, 0, 1, -1, 0, 1, 1, 0, &
+    -1, 1, 0], [3, 20])
+  integer, parameter :: ends(2, 5:10) = reshape([1, 2, 2, 3, 1, 3, 1, 4, 2, 4, 3, 4], [2, 6])
 
 contains
 
-  !> Writes folder/name: nodes at xyz, displacement u (length) and contact force (force) on every node as vectors; pressure, gap
-  !> and state from lambda (force), slack (gap, length) and state of every contact row. A body whose nodes run line after line in
-  !> the plane is drawn by quadrilaterals, one whose nodes lie on a lattice in space by hexahedra (every stride-th plane has
-  !> corners), any other by its nodes.
-  subroutine picture_case(folder, name, host, stride, u, force, lambda, slack, state)
+  !> Writes the elements of a case: displacement u (length) and contact force by unknowns, lambda (force), slack (gap, length) and
+  !> state of every row.
+  subroutine picture_case(folder, name, host, shear_modulus, u, force, lambda, slack, state)
     character(len=*), intent(in) :: folder, name
     type(contact_case), intent(in) :: host
-    integer, intent(in) :: stride(:), state(:)
-    real(dp), intent(in) :: u(:), force(:), lambda(:), slack(:)
-    type(contact_of_nodes) :: contact
-    integer, allocatable :: cell(:, :), body(:)
-    integer :: unit, dims, nodes, i, b, before
+    integer, intent(in) :: state(:)
+    real(dp), intent(in) :: shear_modulus, u(:), force(:), lambda(:), slack(:)
+    type(picture_grid) :: grid
+    type(picture_answer) :: answer
+    real(dp) :: factor
+    integer :: dims, nodes, e, row, node
 
     dims = maxval(host%dir)
     nodes = host%n / dims
-    allocate (cell(20, 0), body(0))
-    do b = 1, size(host%body)
-      before = size(cell, 2)
-      call append_cells(host, b, dims, stride(b), cell)
-      body = [body, [(b, i = before + 1, size(cell, 2))]]
+    allocate (grid%xyz, source=host%xyz(:, dims::dims))
+    allocate (grid%corner, source=host%element)
+    allocate (grid%body, source=host%element_body)
+    allocate (grid%kind(size(grid%body)))
+    do e = 1, size(grid%body)
+      select case (count(grid%corner(:, e) > 0))
+      case (4)
+        grid%kind(e) = picture_quad
+      case (8)
+        grid%kind(e) = picture_hexahedron
+      case (10)
+        grid%kind(e) = picture_tetrahedron10
+      case default
+        grid%kind(e) = picture_hexahedron20
+      end select
     end do
-    call find_contact(host, dims, lambda, slack, state, contact)
-    call vtu_begin(folder, name, nodes, size(cell, 2), unit)
-    call vtu_doubles(unit, 'Points', 3, host%xyz(:, dims::dims))
-    call vtu_cells(unit, cell)
-    call vtu_doubles(unit, 'displacement', 3, in_space(dims, u))
-    call vtu_doubles(unit, 'contact_force', 3, in_space(dims, force))
-    call vtu_doubles(unit, 'pressure', 1, reshape(contact%pressure, [1, nodes]))
-    call vtu_doubles(unit, 'gap', 1, reshape(contact%gap, [1, nodes]))
-    call vtu_integers(unit, 'contact', contact%state)
-    call vtu_next(unit)
-    call vtu_integers(unit, 'body', body)
+    answer%shear_modulus = shear_modulus
+    allocate (answer%u, source=in_space(dims, u))
+    allocate (answer%force, source=in_space(dims, force))
+    allocate (answer%push(nodes), source=0.0_dp)
+    allocate (answer%gap(nodes), source=nan_of())
+    allocate (answer%state(nodes), source=-1)
+    do row = 1, size(lambda)
+      call find_node(host, dims, row, body_of_nodes(host, dims, row), node, factor)
+      if (node == 0) cycle
+      answer%push(node) = lambda(row) * factor
+      answer%gap(node) = slack(row)
+      answer%state(node) = state(row)
+    end do
+    call picture_mesh(folder, name, grid, answer)
+  end subroutine
+
+  !> Writes elements and, as cells of their own, those of their faces that may touch, all of whose nodes have a row. Numbers of
+  !> cells: body, piece, von Mises stress of elements, contact pressure of faces; of nodes: displacement, contact_force, gap,
+  !> contact (the state of the row).
+  subroutine picture_mesh(folder, name, elements, answer)
+    character(len=*), intent(in) :: folder, name
+    type(picture_grid), intent(in) :: elements
+    type(picture_answer), intent(in) :: answer
+    type(picture_grid) :: all
+    real(dp), allocatable :: stress(:), pressure(:)
+    integer :: unit, e, cells
+
+    cells = size(elements%kind)
+    call add_faces(elements, answer%state, all)
+    allocate (stress(size(all%kind)), source=nan_of())
+    do e = 1, cells
+      stress(e) = von_mises(elements, e, answer)
+    end do
+    call find_pressures(all, cells, answer%push, pressure)
+    call vtu_begin(folder, name, all, unit)
+    call vtu_doubles(unit, 'displacement', answer%u)
+    call vtu_doubles(unit, 'contact_force', answer%force)
+    call vtu_doubles(unit, 'gap', reshape(answer%gap, [1, size(answer%gap)]))
+    call vtu_integers(unit, 'contact', answer%state)
+    call vtu_next(unit, all)
+    call vtu_doubles(unit, 'von_mises', reshape(stress, [1, size(stress)]))
+    call vtu_doubles(unit, 'pressure', reshape(pressure, [1, size(pressure)]))
+    if (allocated(answer%piece)) call vtu_integers(unit, 'piece', [answer%piece, [(-1, e=cells + 1, size(all%kind))]])
     call vtu_end(unit)
   end subroutine
 
-  !> Opens folder/name; then come the points, the cells, numbers of the nodes, vtu_next, numbers of the cells, vtu_end.
-  subroutine vtu_begin(folder, name, nodes, cells, unit)
+  !> Opens folder/name; then come numbers of the nodes, vtu_next, numbers of the cells, vtu_end.
+  subroutine vtu_begin(folder, name, grid, unit)
     character(len=*), intent(in) :: folder, name
-    integer, intent(in) :: nodes, cells
+    type(picture_grid), intent(in) :: grid
     integer, intent(out) :: unit
+    integer :: c, total
 
     call open_picture(folder, name, unit)
     write (unit, '(a)') '<?xml version="1.0"?>', '<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">', &
       '<UnstructuredGrid>'
-    write (unit, '(2(a, i0), a)') '<Piece NumberOfPoints="', nodes, '" NumberOfCells="', cells, '">'
+    write (unit, '(2(a, i0), a)') '<Piece NumberOfPoints="', size(grid%xyz, 2), '" NumberOfCells="', size(grid%kind), '">'
     write (unit, '(a)') '<Points>'
-  end subroutine
-
-  !> Ends the points; cell(:,i): nodes of a cell from 0, behind them -1.
-  subroutine vtu_cells(unit, cell)
-    integer, intent(in) :: unit, cell(:, :)
-    integer :: corners(size(cell, 2)), offsets(size(cell, 2)), types(size(cell, 2)), i, total
-
-    corners = count(cell >= 0, dim=1)
-    types = 1
-    where (corners == 4) types = 9
-    where (corners == 8) types = 12
-    where (corners == 20) types = 25
-    total = 0
-    do i = 1, size(corners)
-      total = total + corners(i)
-      offsets(i) = total
-    end do
+    call vtu_doubles(unit, 'Points', grid%xyz)
     write (unit, '(a)') '</Points>', '<Cells>'
     call begin_array(unit, 'Int64', 'connectivity', 1)
-    do i = 1, size(corners)
-      write (unit, '(20(i0, 1x))') cell(:corners(i), i)
+    do c = 1, size(grid%kind)
+      write (unit, '(20(i0, 1x))') pack(grid%corner(:, c), grid%corner(:, c) > 0) - 1   ! VTK counts from 0
     end do
     write (unit, '(a)') '</DataArray>'
     call begin_array(unit, 'Int64', 'offsets', 1)
-    write (unit, '(i0)') offsets
+    total = 0
+    do c = 1, size(grid%kind)
+      total = total + count(grid%corner(:, c) > 0)
+      write (unit, '(i0)') total
+    end do
     write (unit, '(a)') '</DataArray>'
     call begin_array(unit, 'UInt8', 'types', 1)
-    write (unit, '(i0)') types
+    write (unit, '(i0)') grid%kind
     write (unit, '(a)') '</DataArray>', '</Cells>', '<PointData>'
   end subroutine
 
   !> Goes on from the nodes to the cells.
-  subroutine vtu_next(unit)
+  subroutine vtu_next(unit, grid)
     integer, intent(in) :: unit
+    type(picture_grid), intent(in) :: grid
 
     write (unit, '(a)') '</PointData>', '<CellData>'
+    call vtu_integers(unit, 'body', grid%body)
   end subroutine
 
   subroutine vtu_end(unit)
@@ -117,17 +165,17 @@ contains
     close (unit)
   end subroutine
 
-  !> values(components,n).
-  subroutine vtu_doubles(unit, name, components, values)
-    integer, intent(in) :: unit, components
+  !> values(:,i): the components of node or cell i.
+  subroutine vtu_doubles(unit, name, values)
+    integer, intent(in) :: unit
     character(len=*), intent(in) :: name
     real(dp), intent(in) :: values(:, :)
     integer :: i
 
-    call begin_array(unit, 'Float64', name, components)
+    call begin_array(unit, 'Float64', name, size(values, 1))
     do i = 1, size(values, 2)
       if (any(ieee_is_nan(values(:, i)))) then
-        write (unit, '(a)') repeat('nan ', components)
+        write (unit, '(a)') repeat('nan ', size(values, 1))
       else
         write (unit, '(3es17.8e3)') values(:, i)
       end if
@@ -143,6 +191,25 @@ contains
     write (unit, '(i0)') values
     write (unit, '(a)') '</DataArray>'
   end subroutine
+
+  !> Writes folder/stem.pvd, which ParaView opens as a film of stem_0.vtu, stem_1.vtu, .. at the times 0, 1, ..
+  subroutine picture_pvd(folder, stem, steps)
+    character(len=*), intent(in) :: folder, stem
+    integer, intent(in) :: steps
+    integer :: unit, step
+
+    call open_picture(folder, stem // '.pvd', unit)
+    write (unit, '(a)') '<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', '<Collection>'
+    do step = 0, steps - 1
+      write (unit, '(a, i0, 3a, i0, a)') '<DataSet timestep="', step, '" file="', stem, '_', step, '.vtu"/>'
+    end do
+    write (unit, '(a)') '</Collection>', '</VTKFile>'
+    close (unit)
+  end subroutine
+
+  real(dp) function nan_of()
+    nan_of = ieee_value(1.0_dp, ieee_quiet_nan)
+  end function
 
   subroutine begin_array(unit, kind_name, name, components)
     integer, intent(in) :: unit, components
@@ -162,204 +229,192 @@ contains
     vectors(:dims, :) = reshape(from, [dims, size(from) / dims])
   end function
 
-  !> Adds the cells of body b, nodes counted from 0 through all bodies as VTK does; -1: no more nodes.
-  subroutine append_cells(host, b, dims, stride, cell)
-    type(contact_case), intent(in) :: host
-    integer, intent(in) :: b, dims, stride
-    integer, allocatable, intent(inout) :: cell(:, :)
-    integer, allocatable :: more(:, :)
-    integer :: before, nodes, line, i, j
+  !> Gradient in the middle of an element of the shape function of its node i, in the element's own coordinates.
+  pure function gradient(kind, i) result(g)
+    integer, intent(in) :: kind, i
+    real(dp) :: g(3)
+    integer :: k
 
-    before = host%body(b)%offset / dims
-    nodes = host%body(b)%n / dims
-    associate (xyz => host%xyz(:, host%body(b)%offset + 1:host%body(b)%offset + host%body(b)%n:dims))
-      line = count_line(xyz(1, :))
-      if (dims == 2 .and. line > 1 .and. mod(nodes, line) == 0) then
-        allocate (more(20, (nodes / line - 1) * (line - 1)), source=-1)
-        do i = 1, nodes / line - 1
-          do j = 1, line - 1
-            more(:4, (i - 1) * (line - 1) + j) = before + line * (i - 1) + j - 1 + [0, line, line + 1, 1]
-          end do
-        end do
-      else
-        if (dims == 3) call find_hexahedra(xyz, stride, before, more)
-        if (.not. allocated(more)) then
-          allocate (more(20, nodes), source=-1)
-          more(1, :) = [(before + i - 1, i = 1, nodes)]
-        end if
-      end if
-    end associate
-    cell = reshape([cell, more], [20, size(cell, 2) + size(more, 2)])
+    select case (kind)
+    case (picture_tetrahedron10)   ! N = L (2 L - 1), 4 L L', all L = 1/4: the corners have none
+      g = 0
+      if (i > 4) g = [(count(ends(:, i) == k + 1) - count(ends(:, i) == 1), k=1, 3)]
+    case (picture_quad)
+      g = [0.25_dp * place(:2, i), 0.0_dp]
+    case (picture_hexahedron)
+      g = 0.125_dp * place(:, i)
+    case default
+      g = merge(-0.125_dp, 0.25_dp, i <= 8) * place(:, i)
+    end select
+  end function
+
+  !> Von Mises stress in the middle of an element, sqrt(3/2 s : s), of the deviator s = 2 G dev(strain); plane strain in the plane.
+  real(dp) function von_mises(grid, cell, answer)
+    type(picture_grid), intent(in) :: grid
+    integer, intent(in) :: cell
+    type(picture_answer), intent(in) :: answer
+    real(dp) :: places(3, 3), moved(3, 3), strain(3, 3), g(3)
+    integer :: i, k, node
+
+    places = 0
+    moved = 0
+    do i = 1, count(grid%corner(:, cell) > 0)
+      g = gradient(grid%kind(cell), i)
+      node = grid%corner(i, cell)
+      do k = 1, 3
+        places(:, k) = places(:, k) + grid%xyz(:, node) * g(k)
+        moved(:, k) = moved(:, k) + answer%u(:, node) * g(k)
+      end do
+    end do
+    if (grid%kind(cell) == picture_quad) places(3, 3) = 1
+    moved = matmul(moved, inverse(places))   ! the gradient of u
+    strain = (moved + transpose(moved)) / 2
+    g = (moved(1, 1) + moved(2, 2) + moved(3, 3)) / 3
+    do k = 1, 3
+      strain(k, k) = strain(k, k) - g(k)
+    end do
+    von_mises = 2 * answer%shear_modulus * sqrt(1.5_dp * sum(strain**2))
+  end function
+
+  pure function inverse(a) result(b)
+    real(dp), intent(in) :: a(3, 3)
+    real(dp) :: b(3, 3)
+
+    b(1, :) = cross(a(:, 2), a(:, 3))
+    b(2, :) = cross(a(:, 3), a(:, 1))
+    b(3, :) = cross(a(:, 1), a(:, 2))
+    b = b / dot_product(a(:, 1), b(1, :))
+  end function
+
+  pure function cross(a, b) result(c)
+    real(dp), intent(in) :: a(3), b(3)
+    real(dp) :: c(3)
+
+    c = cshift(a, 1) * cshift(b, 2) - cshift(a, 2) * cshift(b, 1)
+  end function
+
+  !> The elements, then their faces all of whose nodes have a row.
+  subroutine add_faces(elements, state, all)
+    type(picture_grid), intent(in) :: elements
+    integer, intent(in) :: state(:)
+    type(picture_grid), intent(out) :: all
+    integer, allocatable :: corner(:, :), kind(:), body(:)
+    integer :: e, cells
+
+    cells = 0
+    allocate (corner(20, 6 * size(elements%kind)), kind(6 * size(elements%kind)), body(6 * size(elements%kind)))
+    do e = 1, size(elements%kind)
+      select case (elements%kind(e))
+      case (picture_quad)
+        call add(face_of_quad, picture_line)
+      case (picture_hexahedron)
+        call add(face_of_hexahedron(:4, :), picture_quad)
+      case (picture_tetrahedron10)
+        call add(face_of_tetrahedron, picture_triangle6)
+      case default
+        call add(face_of_hexahedron, picture_quad8)
+      end select
+    end do
+    allocate (all%xyz, source=elements%xyz)
+    allocate (all%corner, source=reshape([elements%corner, corner(:, :cells)], [20, size(elements%kind) + cells]))
+    allocate (all%kind, source=[elements%kind, kind(:cells)])
+    allocate (all%body, source=[elements%body, body(:cells)])
+
+  contains
+
+    subroutine add(faces, face_kind)
+      integer, intent(in) :: faces(:, :), face_kind
+      integer :: f
+
+      do f = 1, size(faces, 2)
+        if (any(state(elements%corner(faces(:, f), e)) < 0)) cycle
+        cells = cells + 1
+        corner(:, cells) = 0
+        corner(:size(faces, 1), cells) = elements%corner(faces(:, f), e)
+        kind(cells) = face_kind
+        body(cells) = elements%body(e)
+      end do
+    end subroutine
+
   end subroutine
 
-  !> Nodes with the x of the first one, up to the first that differs.
-  pure integer function count_line(x)
-    real(dp), intent(in) :: x(:)
+  !> Pressure of every face behind the elements: its nodes share their forces among their faces by the area of these. NaN elsewhere.
+  subroutine find_pressures(grid, elements, push, pressure)
+    type(picture_grid), intent(in) :: grid
+    integer, intent(in) :: elements
+    real(dp), intent(in) :: push(:)
+    real(dp), allocatable, intent(out) :: pressure(:)
+    real(dp) :: around(size(push)), area
+    integer :: c, nodes
 
-    count_line = 1
-    do while (count_line < size(x))
-      if (abs(x(count_line + 1) - x(1)) > 0) exit
-      count_line = count_line + 1
+    around = 0
+    do c = elements + 1, size(grid%kind)
+      associate (x => grid%xyz(:, max(1, grid%corner(:4, c))), nodes_of => pack(grid%corner(:, c), grid%corner(:, c) > 0))
+        select case (grid%kind(c))
+        case (picture_line)   ! times thickness 1
+          area = norm2(x(:, 2) - x(:, 1))
+        case (picture_triangle6)
+          area = norm2(cross(x(:, 2) - x(:, 1), x(:, 3) - x(:, 1))) / 2
+        case default
+          area = norm2(cross(x(:, 3) - x(:, 1), x(:, 4) - x(:, 2))) / 2
+        end select
+        around(nodes_of) = around(nodes_of) + area
+      end associate
+    end do
+    allocate (pressure(size(grid%kind)), source=nan_of())
+    do c = elements + 1, size(grid%kind)
+      nodes = count(grid%corner(:, c) > 0)
+      pressure(c) = sum(push(grid%corner(:nodes, c)) / around(grid%corner(:nodes, c)))
+    end do
+  end subroutine
+
+  !> Rows join a node of one body with a face of another: the body that has one node only in every row of these two.
+  integer function body_of_nodes(host, dims, row)
+    type(contact_case), intent(in) :: host
+    integer, intent(in) :: dims, row
+    real(dp) :: factor
+    integer :: pair(2), other, node
+
+    pair = pair_of(host, row)
+    body_of_nodes = pair(1)
+    do other = 1, size(host%c)
+      if (any(pair_of(host, other) /= pair)) cycle
+      call find_node(host, dims, other, pair(1), node, factor)
+      if (node == 0) body_of_nodes = pair(2)
     end do
   end function
 
-  !> The hexahedra of nodes on a lattice; not allocated where the lattice is far larger than the body.
-  subroutine find_hexahedra(xyz, stride, before, cell)
-    real(dp), intent(in) :: xyz(:, :)
-    integer, intent(in) :: stride, before
-    integer, allocatable, intent(out) :: cell(:, :)
-    integer, allocatable :: node(:, :, :)
-    integer :: plane(3, size(xyz, 2)), planes(3), corners, cells, found(20), i, j, k, c
-
-    do k = 1, 3
-      call number_planes(xyz(k, :), plane(k, :), planes(k))
-    end do
-    if (product(planes) > 8 * size(xyz, 2)) return
-    allocate (node(planes(1), planes(2), planes(3)), source=-1)
-    do i = 1, size(xyz, 2)
-      node(plane(1, i), plane(2, i), plane(3, i)) = before + i - 1
-    end do
-    corners = merge(20, 8, stride == 2)
-    cells = 0
-    allocate (cell(20, product(planes)), source=-1)
-    do i = 1, planes(1) - stride, stride
-      do j = 1, planes(2) - stride, stride
-        do k = 1, planes(3) - stride, stride
-          do c = 1, corners
-            found(c) = node(i + stride * half(1, c) / 2, j + stride * half(2, c) / 2, k + stride * half(3, c) / 2)
-          end do
-          if (any(found(:corners) < 0)) cycle
-          cells = cells + 1
-          cell(:corners, cells) = found(:corners)
-        end do
-      end do
-    end do
-    cell = cell(:, :cells)
-  end subroutine
-
-  !> The number of the plane that each coordinate lies in, of all planes. Coordinates of one plane differ by at most 1e-6 of the
-  !> body's length along the axis.
-  subroutine number_planes(x, plane, planes)
-    real(dp), intent(in) :: x(:)
-    integer, intent(out) :: plane(:), planes
-    real(dp) :: at, tolerance
-
-    tolerance = 1e-6_dp * (maxval(x) - minval(x))
-    planes = 0
-    at = minval(x)
-    do
-      planes = planes + 1
-      where (x >= at - tolerance) plane = planes
-      if (all(x <= at + tolerance)) exit
-      at = minval(x, mask=x > at + tolerance)
-    end do
-  end subroutine
-
-  subroutine find_contact(host, dims, lambda, slack, state, contact)
+  !> First and last body of a row.
+  function pair_of(host, row) result(pair)
     type(contact_case), intent(in) :: host
-    integer, intent(in) :: dims, state(:)
-    real(dp), intent(in) :: lambda(:), slack(:)
-    type(contact_of_nodes), intent(out) :: contact
-    integer :: node(size(lambda)), pair(2, size(lambda)), r
-    real(dp) :: factor(size(lambda)), area(size(lambda))
+    integer, intent(in) :: row
+    integer :: pair(2)
 
-    allocate (contact%pressure(host%n / dims), source=0.0_dp)
-    allocate (contact%gap(host%n / dims), source=ieee_value(1.0_dp, ieee_quiet_nan))
-    allocate (contact%state(host%n / dims), source=-1)
-    do r = 1, size(lambda)
-      call place_row(host, dims, r, node(r), pair(:, r), factor(r))
-    end do
-    if (dims == 2) then
-      call find_lengths(host%xyz(1, dims * node), pair, area)
-    else
-      call find_areas(host%xyz(:2, dims * node), pair, area)
-    end if
-    do r = 1, size(lambda)
-      contact%pressure(node(r)) = 0
-      if (area(r) > 0) contact%pressure(node(r)) = lambda(r) * factor(r) / area(r)
-      contact%gap(node(r)) = slack(r)
-      contact%state(node(r)) = state(r)
-    end do
-  end subroutine
+    associate (col => host%contact%col(host%contact%row_ptr(row):host%contact%row_ptr(row + 1) - 1))
+      pair = [count(host%body%offset < minval(col)), count(host%body%offset < maxval(col))]
+    end associate
+  end function
 
-  !> The node of a row, its body and the other one, and the force on the node over that of the row.
-  subroutine place_row(host, dims, row, node, pair, factor)
+  !> The node of a body in a row, 0 if the row has several; the force on it over that of the row.
+  subroutine find_node(host, dims, row, body, node, factor)
     type(contact_case), intent(in) :: host
-    integer, intent(in) :: dims, row
-    integer, intent(out) :: node, pair(2)
+    integer, intent(in) :: dims, row, body
+    integer, intent(out) :: node
     real(dp), intent(out) :: factor
     integer :: e
 
-    associate (from => host%contact%row_ptr(row), to => host%contact%row_ptr(row + 1) - 1)
-      associate (nodes => (host%contact%col(from:to) - 1) / dims + 1, val => host%contact%val(from:to), &
-                 bodies => [(body_of(host, host%contact%col(e)), e = from, to)])
-        pair = bodies(1)
-        do e = 1, size(bodies)
-          pair(1) = bodies(e)
-          node = nodes(e)
-          if (all(nodes == node .or. bodies /= pair(1))) exit
-        end do
-        do e = 1, size(bodies)
-          if (bodies(e) /= pair(1)) pair(2) = bodies(e)
-        end do
-        factor = sqrt(sum(val**2, mask=nodes == node))
+    node = 0
+    factor = 0
+    do e = host%contact%row_ptr(row), host%contact%row_ptr(row + 1) - 1
+      associate (col => host%contact%col(e))
+        if (count(host%body%offset < col) /= body) cycle
+        if (node > 0 .and. node /= (col - 1) / dims + 1) then
+          node = 0
+          return
+        end if
+        node = (col - 1) / dims + 1
+        factor = hypot(factor, host%contact%val(e))
       end associate
-    end associate
-  end subroutine
-
-  pure integer function body_of(host, unknown)
-    type(contact_case), intent(in) :: host
-    integer, intent(in) :: unknown
-
-    body_of = size(host%body)
-    do while (host%body(body_of)%offset >= unknown)
-      body_of = body_of - 1
-    end do
-  end function
-
-  !> In the plane: half way to the neighbours of the same pair of bodies along x.
-  subroutine find_lengths(x, pair, length)
-    real(dp), intent(in) :: x(:)
-    integer, intent(in) :: pair(:, :)
-    real(dp), intent(out) :: length(:)
-    logical :: same(size(x))
-    real(dp) :: left, right
-    integer :: r
-
-    do r = 1, size(x)
-      same = pair(1, :) == pair(1, r) .and. pair(2, :) == pair(2, r)
-      left = x(r)
-      right = x(r)
-      if (any(same .and. x < x(r))) left = maxval(x, mask=same .and. x < x(r))
-      if (any(same .and. x > x(r))) right = minval(x, mask=same .and. x > x(r))
-      length(r) = (right - left) / 2
-    end do
-  end subroutine
-
-  !> In space, on a surface z = const: samples of the rectangle around the nodes of a pair of bodies go to the nearest of them.
-  subroutine find_areas(xy, pair, area)
-    real(dp), intent(in) :: xy(:, :)
-    integer, intent(in) :: pair(:, :)
-    real(dp), intent(out) :: area(:)
-    logical :: done(size(area)), same(size(area))
-    real(dp) :: low(2), high(2), at(2)
-    integer :: first, i, j, nearest
-
-    area = 0
-    done = .false.
-    do first = 1, size(area)
-      if (done(first)) cycle
-      same = pair(1, :) == pair(1, first) .and. pair(2, :) == pair(2, first)
-      done = done .or. same
-      low = [minval(xy(1, :), mask=same), minval(xy(2, :), mask=same)]
-      high = [maxval(xy(1, :), mask=same), maxval(xy(2, :), mask=same)]
-      do j = 0, samples - 1
-        do i = 0, samples - 1
-          at = low + (high - low) * [i + 0.5_dp, j + 0.5_dp] / samples
-          nearest = minloc((xy(1, :) - at(1))**2 + (xy(2, :) - at(2))**2, dim=1, mask=same)
-          area(nearest) = area(nearest) + product(high - low) / samples**2
-        end do
-      end do
     end do
   end subroutine
 
