@@ -1,4 +1,5 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
+# make gallery   runs the demo and renders the pictures of docs/gallery.md from its results (the first time 700 MB in build/gallery)
 # make quick     after every change: unit tests, claims but for the three slowest, documents; make driver  NAME=c_settings: one driver
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
 # make metis     tests with the feature metis                          make ranks      Rust tests with bodies lent to other ranks
@@ -27,7 +28,7 @@
 # make man       the manual pages alone                                make deb        Debian packages in build/deb (some minutes)
 # make release   source archive with all crates, wheel, Debian packages, checksums in build/release (a quarter of an hour)
 # make packaging cargo cinstall against make install, an installation without network, the conda recipe (some minutes, the first time many)
-# bench, scaling, demo, docs, hosts, hosts-python, mpi and test install the Debian packages they miss (tools/setup.sh).
+# bench, scaling, demo, docs, gallery, hosts, hosts-python, mpi and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CARGO   ?= cargo
@@ -42,7 +43,7 @@ RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO
 STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery rungs bits ranks test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling spooles paper docs
-.PHONY: quick driver man deb mpi mpi-short hosts hosts-python
+.PHONY: quick gallery driver man deb mpi mpi-short hosts hosts-python
 .PHONY: abi licences numbers vary packaging release stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -162,6 +163,16 @@ build/demo/%_fortran: examples_fortran/%.f $(MODULES) $(wildcard include/fortran
 demo: setup
 	@$(MAKE) --no-print-directory data $(PROGRAMS)
 	@tools/demo.sh build/demo build/data build/pictures
+
+# Pictures of docs/gallery.md, off screen, from the files of the demo.
+build/gallery/installed: tools/gallery/requirements.txt
+	@tools/setup.sh libegl1 libgl1-mesa-dri
+	python3 -m venv --clear $(@D)
+	$(@D)/bin/pip install --quiet --requirement $<
+	touch $@
+
+gallery: demo build/gallery/installed
+	VTK_DEFAULT_OPENGL_WINDOW=vtkEGLRenderWindow build/gallery/bin/python tools/gallery/gallery.py build/pictures docs/pictures
 
 # ---- tests
 # Without the three slowest claims, which take a third of the time of all.
