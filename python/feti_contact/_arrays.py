@@ -1,0 +1,104 @@
+"""Arrays and matrices as the library takes them: what fits is passed as it is, what loses digits is refused."""
+
+import numpy as np
+
+
+def numbers(x, name, shape=None):
+    """float64 in one piece, by rows; integers and arrays with gaps are copied, everything else of numpy is a TypeError."""
+    a = np.asarray(x)
+    if a.size == 0 and a.dtype == object or a.dtype.kind not in "fiub" or a.dtype.kind == "f" and a.dtype.itemsize != 8:
+        raise TypeError(f"{name}: numbers of type {a.dtype}, not float64; convert them if you mean it, float32 has lost digits")
+    return fitting(np.ascontiguousarray(a, dtype=np.float64), name, shape)
+
+
+def integers(x, name, shape=None, dtype=None):
+    """int32 or int64 in one piece, by rows; other integers are copied to int64, everything else is a TypeError."""
+    a = np.asarray(x)
+    if a.size == 0 and a.dtype == np.float64:
+        a = a.astype(np.int64)
+    if a.dtype.kind not in "iu" or a.dtype == np.uint64 and a.size and a.max() > np.iinfo(np.int64).max:
+        raise TypeError(f"{name}: numbers of type {a.dtype}, not integers")
+    own = a.dtype.newbyteorder("=") if a.dtype.kind == "i" and a.dtype.itemsize in (4, 8) else np.dtype(np.int64)
+    return fitting(np.ascontiguousarray(a, dtype=dtype or own), name, shape)
+
+
+def together(*arrays):
+    """The index arrays with one type, and the ending of the C function for it: they are copied only if they differ."""
+    wide = any(a.dtype == np.int64 for a in arrays if a is not None)
+    return [None if a is None else a.astype(np.int64 if wide else np.int32, copy=False) for a in arrays], "i64" if wide else "i32"
+
+
+def fitting(a, name, shape):
+    if shape is not None and (a.ndim != len(shape) or any(want not in (None, has) for want, has in zip(shape, a.shape))):
+        want = ", ".join("any" if n is None else str(n) for n in shape)
+        raise ValueError(f"{name}: shape {a.shape}, not ({want}{',' if len(shape) == 1 else ''})")
+    return a
+
+
+def at(a):
+    """The address of an array for ctypes; None remains None. The caller keeps the array."""
+    return None if a is None else a.ctypes.data
+
+
+def is_sparse(matrix):
+    return hasattr(matrix, "tocsr")
+
+
+def compressed(ptr, col, val, n, name):
+    """Pointers, indices and values of a compressed matrix with n rows, of lengths that C may rely on."""
+    ptr, col, val = integers(ptr, name + ".indptr", (n + 1,)), integers(col, name + ".indices", (None,)), numbers(val, name + ".data", (None,))
+    if not 0 <= ptr[-1] <= min(col.size, val.size):
+        raise ValueError(f"{name}: indptr ends with {ptr[-1]}, but there are {col.size} indices and {val.size} values")
+    return ptr, col, val
+
+
+def rows_of(matrix, name):
+    """(row pointers, columns, values, rows, columns of all) of a scipy.sparse matrix or of a dense one; duplicates are summed by the library."""
+    if is_sparse(matrix):
+        matrix = matrix.tocsr()
+        ptr, col, val = compressed(matrix.indptr, matrix.indices, matrix.data, matrix.shape[0], name)
+        return ptr, col, val, *matrix.shape
+    dense = numbers(matrix, name)
+    dense = fitting(dense.reshape(1, -1) if dense.ndim == 1 else dense, name, (None, None))
+    row, col = np.nonzero(dense)
+    ptr = np.concatenate([[0], np.cumsum(np.count_nonzero(dense, axis=1))])
+    return ptr, col, dense[row, col], *dense.shape
+
+
+def constraint_rows(rows, name):
+    """Row pointers, bodies (None: unknowns of the whole model), unknowns and values, from a matrix or {body: matrix}."""
+    if not isinstance(rows, dict):
+        ptr, col, val, m, _ = rows_of(rows, name)
+        return m, ptr, None, col, val
+    if not rows:
+        raise ValueError(f"{name}: no body")
+    parts = [(int(body), *rows_of(matrix, f"{name}[{int(body)}]")) for body, matrix in rows.items()]
+    m = parts[0][4]
+    if any(part[4] != m for part in parts):
+        raise ValueError(f"{name}: the matrices of the bodies have {[part[4] for part in parts]} rows")
+    row = np.concatenate([np.repeat(np.arange(m), np.diff(ptr)) for _, ptr, _, _, _, _ in parts])
+    order = np.argsort(row, kind="stable")
+    body = np.concatenate([np.full(ptr[-1], body, dtype=np.int64) for body, ptr, *_ in parts])[order]
+    dof = np.concatenate([col[: ptr[-1]] for _, ptr, col, *_ in parts])[order].astype(np.int64)
+    val = np.concatenate([val[: ptr[-1]] for _, ptr, _, val, _, _ in parts])[order]
+    ptr = np.concatenate([[0], np.cumsum(np.bincount(row, minlength=m))])
+    return m, ptr, body, dof, val
+
+
+def outward(faces, x, inside):
+    """Faces (m, k), corners first, turned so that `inside` (m, dim), a point of the element of each, is behind them.
+
+    x (nodes, dim). In the plane the body is then on the left of a line; in space corners go counterclockwise seen from outside.
+    Mid nodes stay with their edges: lines of 2 and 3 nodes, triangles of 3 and 6, quadrilaterals of 4, 8 and 9."""
+    faces, x, inside = integers(faces, "faces", (None, None)), numbers(x, "x", (None, None)), numbers(inside, "inside", (None, None))
+    k, start = faces.shape[1], x[faces[:, 0]]
+    along, to_body = x[faces[:, 1]] - start, inside - start
+    if x.shape[1] == 2:
+        wrong = along[:, 0] * to_body[:, 1] < along[:, 1] * to_body[:, 0]
+        order = [1, 0, *range(2, k)]
+    else:
+        wrong = np.einsum("ij,ij->i", np.cross(along, x[faces[:, 2]] - start), to_body) > 0
+        corners = 3 if k in (3, 6) else 4
+        edges = [corners + e for e in reversed(range(corners - 1))] + [2 * corners - 1] if k > corners else []
+        order = [*reversed(range(corners)), *edges, *range(2 * corners, k)]
+    return np.where(wrong[:, None], faces[:, order], faces)

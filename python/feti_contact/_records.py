@@ -1,0 +1,65 @@
+"""Reports of the library as objects with the fields of the C structs (feti_contact.h has their meaning) and a readable repr."""
+
+import ctypes
+
+from . import _raw
+from ._library import LIBRARY
+
+
+class Record(ctypes.Structure):
+    """Fields that do not apply (-1, NaN) are left out of the repr."""
+
+    def __init__(self):
+        super().__init__()
+        self.struct_size = ctypes.sizeof(self)
+
+    def _shown(self):
+        for name, _ in type(self)._fields_:
+            value = getattr(self, name)
+            value = tuple(value) if isinstance(value, ctypes.Array) else value
+            known = value == value and value != -1 and not (isinstance(value, tuple) and all(x != x for x in value))
+            if known and name != "struct_size" and not name.startswith("reserved"):
+                yield name, value
+
+    def as_dict(self):
+        """The fields that apply, by name."""
+        return dict(self._shown())
+
+    def __repr__(self):
+        text = lambda x: f"{x:.6g}" if isinstance(x, float) else f"({', '.join(map(text, x))})" if isinstance(x, tuple) else str(x)  # noqa: E731
+        fields = {name: text(value) for name, value in self._shown()}
+        if "status" in fields:
+            fields["status"] = LIBRARY.feti_status_name(self.status).decode()
+        return f"{type(self).__name__}({', '.join(f'{name}={value}' for name, value in fields.items())})"
+
+    def __reduce__(self):
+        return type(self)._of, (bytes(self),)
+
+    @classmethod
+    def _of(cls, data):
+        return cls.from_buffer_copy(data)
+
+
+def record(name, raw, doc):
+    return type(name, (Record,), {"_fields_": raw._fields_, "__doc__": doc, "__module__": __name__})
+
+
+class Info(Record):
+    """What a solve did and how good the answer is: feti_info. `worst` <= 1: the certificate passes. Truth value: the answer is complete."""
+
+    _fields_ = _raw.feti_info._fields_
+
+    @property
+    def name(self):
+        """Name of the status, such as "FETI_OK"."""
+        return LIBRARY.feti_status_name(self.status).decode()
+
+    def __bool__(self):
+        return self.status == 0
+
+
+Certificate = record("Certificate", _raw.feti_certificate, "Verdict on an answer, with the worst body or row of each entry: feti_certificate.")
+Findings = record("Findings", _raw.feti_findings, "Why there is no answer, or what is unusual about the problem: feti_findings.")
+BodyInfo = record("BodyInfo", _raw.feti_body_facts, "Facts on a body and on its last setup: feti_body_facts.")
+PairInfo = record("PairInfo", _raw.feti_pair_facts, "What a pair carries, where it is closed and where it overlaps: feti_pair_facts.")
+Progress = record("Progress", _raw.feti_progress, "Progress of a setup or a solve: feti_progress.")

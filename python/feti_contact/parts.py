@@ -1,0 +1,296 @@
+"""Bodies, surfaces and pairs: numbers of a problem with the calls that are about them."""
+
+from __future__ import annotations
+
+from ctypes import byref, c_int64
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from . import _raw
+from ._arrays import at, compressed, fitting, integers, is_sparse, numbers, together
+from ._library import call
+from ._records import BodyInfo, PairInfo
+
+STORAGE = {"full": _raw.FETI_FULL, "lower": _raw.FETI_LOWER, "upper": _raw.FETI_UPPER}
+TURNED = {"full": "full", "lower": "upper", "upper": "lower"}
+MOTIONS = {"exact": _raw.FETI_EXACT, "candidates": _raw.FETI_CANDIDATES, "soft": _raw.FETI_SOFT}
+KINDS = {"all": 0, "contact": _raw.FETI_INEQUALITY, "equality": _raw.FETI_EQUALITY, "tangential": _raw.FETI_TANGENTIAL}
+METHODS = {"node_to_face": _raw.FETI_NODE_TO_FACE, "mortar": _raw.FETI_MORTAR}
+SHAPES = {(2, 2): 1, (2, 3): 2, (3, 3): 3, (3, 6): 4, (3, 4): 5, (3, 8): 6, (3, 9): 7}  # (dim, nodes of a face): shape of the library
+FIELDS = ("force", "pressure", "shear", "gap", "slip", "area", "normal", "closed")
+
+
+def one_of(table, key, name):
+    if key not in table:
+        raise ValueError(f"{name}: {key!r}, not one of {', '.join(map(repr, table))}")
+    return table[key]
+
+
+class Part:
+    """`int(part)` is its number in the problem."""
+
+    def __init__(self, problem, number: int):
+        self.problem, self.number = problem, number
+
+    def __index__(self):
+        return self.number
+
+    def __eq__(self, other):
+        return type(other) is type(self) and (other.problem, other.number) == (self.problem, self.number)
+
+    def __hash__(self):
+        return hash((id(self.problem), self.number))
+
+    def _call(self, name, *arguments):
+        return call(name, self.problem._handle, self.number, *arguments)
+
+
+class Body(Part):
+    """A body with `n` unknowns. f, u, r are vectors (n); force and length are in units of the host."""
+
+    def __init__(self, problem, number, n):
+        super().__init__(problem, number)
+        self.n = n
+
+    def __repr__(self):
+        return f"<Body {self.number}: {self.n} unknowns>"
+
+    def stiffness(self, K: Any, storage: str = "full", copy: bool = True) -> None:
+        """Gives K (n, n), force per length: scipy.sparse or dense; of CSR no column of a row twice, of COO what is at one place is added.
+
+        storage: "full", "lower" or "upper": the triangle that is given. copy=False lends the arrays of a lower triangle in CSR with int32,
+        ascending columns and every diagonal entry; they become read-only and are kept until K is replaced or the problem closed."""
+        one_of(STORAGE, storage, "storage")
+        lent = []
+        if not is_sparse(K):
+            K = numbers(K, "K", (self.n, self.n))
+            self._call("body_stiffness_dense", self.n, at(K), self.n, STORAGE[TURNED[storage]], _raw.FETI_COPY)
+        elif fitting(K, "K", (self.n, self.n)).format == "coo":
+            (row, col), kind = together(integers(K.row, "K.row", (None,)), integers(K.col, "K.col", (None,)))
+            val = numbers(K.data, "K.data", row.shape)
+            self._call(f"body_stiffness_triplets_{kind}", self.n, val.size, at(row), at(col), at(val), 0, STORAGE[storage], _raw.FETI_COPY)
+        else:
+            storage = TURNED[storage] if K.format == "csc" else storage  # rows of K' = K
+            K = K if K.format == "csc" else K.tocsr()
+            ptr, col, val = compressed(K.indptr, K.indices, K.data, self.n, "K")
+            (ptr, col), kind = together(ptr, col)
+            self._call(f"body_stiffness_{kind}", self.n, at(ptr), at(col), at(val), 0, STORAGE[storage], _raw.FETI_COPY if copy else _raw.FETI_BORROW)
+            lent = [] if copy else [val, col][: self.info.borrowed]
+        for array in lent:
+            array.flags.writeable = False
+        self.problem._keep("K", self.number, lent)
+
+    def skyline(self, ptr, values, diagonal=None, up: bool = False) -> None:
+        """Gives K by its profile: column j of the upper triangle has values[ptr[j]:ptr[j + 1]], downwards or (up) from the diagonal upwards.
+
+        ptr (n + 1) from 0; diagonal (n): the columns are without it."""
+        ptr, values = integers(ptr, "ptr", (self.n + 1,)), numbers(values, "values", (None,))
+        (ptr,), kind = together(ptr)
+        if not 0 <= ptr[-1] <= values.size:
+            raise ValueError(f"ptr ends with {ptr[-1]}, but there are {values.size} values")
+        diagonal = None if diagonal is None else numbers(diagonal, "diagonal", (self.n,))
+        self._call(f"body_stiffness_skyline_{kind}", self.n, at(diagonal), at(ptr), at(values), 0, int(up), _raw.FETI_COPY)
+        self.problem._keep("K", self.number, [])
+
+    def values(self, K: Any) -> None:
+        """Gives new values of K in the pattern and order of the first: a matrix of the same form, or its values alone. The analysis is kept."""
+        if is_sparse(K) or np.ndim(K) == 1:
+            val = numbers(K.data if is_sparse(K) else K, "values", (None,))
+            self._call("body_values", val.size, at(val))
+            kept = self.problem._kept.get(("K", self.number))
+            if kept:  # the values of a matrix that is lent are replaced by these
+                val.flags.writeable = False
+                kept[0] = val
+        else:
+            K = numbers(K, "K", (self.n, self.n))
+            self._call("body_values_dense", self.n, at(K), self.n)
+
+    def elements(self, dofs, matrices, storage: str = "full") -> None:
+        """Gives K by its elements: dofs (elements, k) and matrices (elements, k, k), or lists of arrays of several sizes. dofs below 0 are held.
+
+        Option `pieces` and coordinates come before. The matrices are symmetric; only the triangle `storage` is read."""
+        dofs = [integers(d, "dofs", (None,), np.int64) for d in dofs]
+        ptr = np.concatenate([[0], np.cumsum([d.size for d in dofs], dtype=np.int64)])
+        dof = np.concatenate(dofs) if dofs else np.empty(0, dtype=np.int64)
+        if len(matrices) != len(dofs):
+            raise ValueError(f"matrices: {len(matrices)} for {len(dofs)} elements")
+        ke = [numbers(m, f"matrices[{e}]", (d.size, d.size)) for e, (m, d) in enumerate(zip(matrices, dofs))]
+        if storage != "full":
+            triangle = np.triu_indices if one_of(STORAGE, storage, "storage") == _raw.FETI_UPPER else np.tril_indices
+            ke = [m[triangle(len(m))] for m in ke]
+            storage = TURNED[storage]  # by rows, not by columns
+        self._call("body_mesh_i64", len(dofs), at(ptr), at(dof), 0)
+        ke = np.concatenate([m.ravel() for m in ke]) if ke else np.empty(0)
+        self._call("body_elements", 0, len(dofs), at(ke), STORAGE[storage])
+        self.problem._keep("K", self.number, [])
+
+    def operator(self, diagonal, kplus: Callable, k: Callable, concurrent: bool = False) -> None:
+        """Gives K by functions: k(X) and kplus(X) return K X and K+ X for X (n, columns). The null space must be given, too.
+
+        diagonal (n): that of K. concurrent: they may run on several threads at once. Their exceptions come out of the solve."""
+        diagonal = numbers(diagonal, "diagonal", (self.n,))
+        functions = [_raw.feti_operator_fn(self._applied(f, self.problem._catch)) for f in (kplus, k)]
+        self._call("body_operator", self.n, at(diagonal), *functions, int(concurrent), None)
+        self.problem._keep("K", self.number, functions)
+
+    @staticmethod
+    def _applied(function, catch):
+        view = lambda p, n, m, ld: np.ctypeslib.as_array((_raw.c_double * (ld * m)).from_address(p)).reshape(m, ld)[:, :n].T  # noqa: E731
+
+        def run(_, body, n, m, x, ldx, y, ldy):
+            def work():
+                X = view(x, n, m, ldx)
+                X.flags.writeable = False
+                view(y, n, m, ldy)[...] = np.asarray(function(X)).reshape(n, m)
+
+            return catch(work, -1)
+
+        return run
+
+    def load(self, f) -> None:
+        """Gives the load f (n), force; another call replaces it."""
+        f = numbers(f, "load", (self.n,))
+        self._call("body_load", self.n, at(f))
+
+    def null_space(self, R: Any, kind: str = "exact") -> None:
+        """Gives the motions R (n, r) or (n) that K does not resist; None: there are none. kind: "exact", "candidates" or "soft" (weakly resisted)."""
+        if R is None:
+            self._call("body_no_null_space")
+            return
+        R = np.asarray(R)
+        R = fitting(numbers(R.reshape(-1, 1) if R.ndim == 1 else R, "null_space"), "null_space", (self.n, None))
+        columns = np.ascontiguousarray(R.T)
+        self._call("body_null_space", R.shape[1], self.n, at(columns), self.n, one_of(MOTIONS, kind, "kind"))
+
+    def coordinates(self, xyz, node=None, direction=None, kind: str = "candidates") -> None:
+        """Gives the places from which the library makes rigid motions: of nodes with an unknown for each direction, xyz (n / dim, dim), or of
+        each unknown, xyz (n, dim) with its label node (n) and direction (n): 1 to 3 displacement along x, y, z, 4 to 6 rotation."""
+        xyz = numbers(xyz, "coordinates", (None, None))
+        dim = xyz.shape[1]
+        if node is None and direction is None:
+            fitting(xyz, "coordinates", (self.n // max(dim, 1), dim))
+            node, direction = np.repeat(np.arange(len(xyz)), dim), np.tile(np.arange(1, dim + 1), len(xyz))
+            xyz = np.repeat(xyz, dim, axis=0)
+        xyz = fitting(xyz, "coordinates", (self.n, dim))
+        node, direction = integers(node, "node", (self.n,), np.int32), integers(direction, "direction", (self.n,), np.int32)
+        self._call("body_coordinates_flags", one_of(MOTIONS, kind, "kind"))
+        self._call("body_coordinates", dim, self.n, at(node), at(direction), at(xyz), dim)
+
+    def numbering(self, number) -> None:
+        """Gives the host's number of each unknown (n), from 0: for rows of the whole model and for arrays over all bodies."""
+        number = integers(number, "number", (self.n,), np.int64)
+        self._call("body_numbering_i64", self.n, at(number), 0)
+        self.problem._widen(int(number.max()) + 1)
+
+    def displacement(self) -> np.ndarray:
+        """u (n) of the last answer, length."""
+        u = np.empty(self.n)
+        self._call("displacement", self.n, at(u))
+        return u
+
+    def reaction(self, kind: str = "all") -> np.ndarray:
+        """Force of the rows on the body (n): K u = f + r; of one kind: "contact", "equality", "tangential"."""
+        r = np.empty(self.n)
+        call("reaction", self.problem._handle, one_of(KINDS, kind, "kind"), self.number, self.n, at(r))
+        return r
+
+    def motions(self) -> np.ndarray:
+        """The null space that the library uses, (n, r); makes a setup if one is due."""
+        r = c_int64()
+        self._call("body_null_space_get", self.n, byref(r), None, 0)
+        R = np.empty((r.value, self.n))
+        self._call("body_null_space_get", self.n, byref(r), at(R), self.n)
+        return R.T
+
+    def amplitudes(self) -> np.ndarray:
+        """Amplitudes (r) of the motions in the last answer."""
+        alpha = np.empty(self.motions().shape[1])
+        self._call("amplitudes", alpha.size, at(alpha))
+        return alpha
+
+    def held_forces(self, n: int) -> np.ndarray:
+        """Forces on held unknowns 0 to n - 1 of a body given by elements: K_hf u."""
+        r = np.empty(n)
+        self._call("body_held_forces", n, at(r))
+        return r
+
+    def pieces(self) -> np.ndarray:
+        """Piece of each unknown (n), from 0; zeros for a body that is not cut."""
+        piece = np.empty(self.n, dtype=np.int64)
+        self._call("body_pieces", self.n, at(piece))
+        return piece
+
+    def escape(self) -> np.ndarray:
+        """Motion (n) of the body that moves away, after FETI_LOAD_NOT_HELD, FETI_SLIDES or FETI_INDEFINITE; largest entry of all bodies 1."""
+        v = np.empty(self.n)
+        self._call("diagnosis_motion", self.n, at(v))
+        return v
+
+    @property
+    def info(self) -> BodyInfo:
+        """Sizes, memory, source of the null space, estimated error of the forces."""
+        facts = BodyInfo()
+        self._call("body_info", byref(facts))
+        return facts
+
+    def surface(self, x, dof=None, faces=()) -> Surface:
+        """A surface over nodes of the body: see Problem.add_surface."""
+        return self.problem.add_surface(x, dof, faces, body=self)
+
+
+class Surface(Part):
+    """A surface with its positions x (nodes, dim), or a rigid shape."""
+
+    def __init__(self, problem, number, shape):
+        super().__init__(problem, number)
+        self.shape = shape
+
+    def __repr__(self):
+        return f"<Surface {self.number}: {'%d nodes in %d dimensions' % self.shape if len(self.shape) == 2 else 'rigid'}>"
+
+    def move(self, x) -> None:
+        """Gives new positions: x (nodes, dim), length, or the numbers of a rigid shape."""
+        x = numbers(x, "x", self.shape)
+        self._call("surface_move", at(x), x.shape[-1])
+
+
+class Pair(Part):
+    """A pair of surfaces; its rows `first` to `first + rows - 1` are contact rows, of a tie equality rows."""
+
+    def __init__(self, problem, number, slave, first):
+        super().__init__(problem, number)
+        self.slave, self.first = slave, first
+
+    def __repr__(self):
+        return f"<Pair {self.number}: {self.info!r}>"
+
+    def set(self, **numbers_by_name) -> None:
+        """friction, cohesion, offset, compliance (a number, or one for each slave node), adjust, on, angle, depth, thickness, axisymmetric."""
+        for name, value in numbers_by_name.items():
+            value = fitting(np.atleast_1d(numbers(value, name)), name, (None,))
+            if value.size not in (1, self.slave.shape[0]):
+                raise ValueError(f"{name}: {value.size} numbers, not 1 or {self.slave.shape[0]}, the nodes of the slave")
+            self._call("pair_set_f64", name.encode(), value.size, at(value))
+
+    def field(self, name: str) -> np.ndarray:
+        """force, pressure, gap, area, closed (nodes) or shear, slip, normal (nodes, dim) at the nodes of the slave; 0 without a partner."""
+        if name not in FIELDS:
+            raise ValueError(f"field {name!r}, not one of {', '.join(FIELDS)}")
+        values = np.empty(self.slave.shape if name in ("shear", "slip", "normal") else self.slave.shape[0])
+        self._call("pair_field", FIELDS.index(name) + 1, values.size, at(values))
+        return values
+
+    @property
+    def info(self) -> PairInfo:
+        """Resultant, counts of nodes, largest pressure, overlap."""
+        facts = PairInfo()
+        self._call("pair_info", byref(facts))
+        return facts
+
+
+def optional(x: Any, name: str, shape) -> Optional[np.ndarray]:
+    """Numbers of this shape, also from one number for all; None remains None."""
+    if x is None:
+        return None
+    return numbers(np.full(shape, float(x)) if np.ndim(x) == 0 and np.asarray(x).dtype.kind in "fiu" else x, name, shape)
