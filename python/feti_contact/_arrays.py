@@ -8,7 +8,7 @@ def numbers(x, name, shape=None):
     a = np.asarray(x)
     if a.size == 0 and a.dtype == object or a.dtype.kind not in "fiub" or a.dtype.kind == "f" and a.dtype.itemsize != 8:
         raise TypeError(f"{name}: numbers of type {a.dtype}, not float64; convert them if you mean it, float32 has lost digits")
-    return fitting(np.ascontiguousarray(a, dtype=np.float64), name, shape)
+    return np.ascontiguousarray(fitting(a, name, shape), dtype=np.float64)
 
 
 def integers(x, name, shape=None, dtype=None):
@@ -19,13 +19,13 @@ def integers(x, name, shape=None, dtype=None):
     if a.dtype.kind not in "iu" or a.dtype == np.uint64 and a.size and a.max() > np.iinfo(np.int64).max:
         raise TypeError(f"{name}: numbers of type {a.dtype}, not integers")
     own = a.dtype.newbyteorder("=") if a.dtype.kind == "i" and a.dtype.itemsize in (4, 8) else np.dtype(np.int64)
-    return fitting(np.ascontiguousarray(a, dtype=dtype or own), name, shape)
+    return np.ascontiguousarray(fitting(a, name, shape), dtype=dtype or own)
 
 
 def together(*arrays):
     """The index arrays with one type, and the ending of the C function for it: they are copied only if they differ."""
     wide = any(a.dtype == np.int64 for a in arrays if a is not None)
-    return [None if a is None else a.astype(np.int64 if wide else np.int32, copy=False) for a in arrays], "i64" if wide else "i32"
+    return [None if a is None else np.ascontiguousarray(a, dtype=np.int64 if wide else np.int32) for a in arrays], "i64" if wide else "i32"
 
 
 def fitting(a, name, shape):
@@ -37,6 +37,7 @@ def fitting(a, name, shape):
 
 def at(a):
     """The address of an array for ctypes; None remains None. The caller keeps the array."""
+    assert a is None or a.flags.c_contiguous
     return None if a is None else a.ctypes.data
 
 

@@ -7,7 +7,7 @@ from ._library import LIBRARY
 
 
 class Record(ctypes.Structure):
-    """Fields that do not apply (-1, NaN) are left out of the repr."""
+    """Fields that are 0 or do not apply (-1, NaN) are left out of the repr."""
 
     def __init__(self):
         super().__init__()
@@ -17,12 +17,12 @@ class Record(ctypes.Structure):
         for name, _ in type(self)._fields_:
             value = getattr(self, name)
             value = tuple(value) if isinstance(value, ctypes.Array) else value
-            known = value == value and value != -1 and not (isinstance(value, tuple) and all(x != x for x in value))
-            if known and name != "struct_size" and not name.startswith("reserved"):
+            empty = value in (0, -1) and name not in ("status", "passed") or value != value or isinstance(value, tuple) and not any(x == x and x for x in value)
+            if not empty and name != "struct_size":
                 yield name, value
 
     def as_dict(self):
-        """The fields that apply, by name."""
+        """The fields that are not 0 and apply, by name."""
         return dict(self._shown())
 
     def __repr__(self):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import logging
+import operator
 import os
 import tempfile
 import warnings
@@ -182,7 +183,7 @@ class Problem:
         if n is None:
             raise TypeError("add_body needs K or n")
         number = c_int64()
-        call("body_add", self._handle, n, byref(number))
+        call("body_add", self._handle, operator.index(n), byref(number))
         body = Body(self, number.value, n)
         self._bodies.append(body)
         if K is not None:
