@@ -1,5 +1,5 @@
-"""recipes.py ROOT: the recipes for conda and Spack have the version, the Rust and the features of Cargo.toml, and the conda recipe tests
-for every file that make install puts, and for no other."""
+"""recipes.py ROOT: the recipes for conda and Spack and the Python package have the version, the Rust and the features of Cargo.toml, and
+the conda recipe tests for every file that make install puts, and for no other."""
 
 import fnmatch
 import re
@@ -21,6 +21,11 @@ def same(what, found, expected):
     if found != expected:
         faults.append(f"{what}: {found!r}, expected {expected!r}")
 
+
+# ---- Python
+wheel = root / "python/pyproject.toml"
+if wheel.exists():
+    same("python: version", re.search(r'^version = "(.*)"', wheel.read_text(), re.M)[1], version)
 
 # ---- conda
 recipe = (root / "packaging/conda/recipe.yaml").read_text()
