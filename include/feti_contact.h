@@ -904,6 +904,8 @@ int32_t feti_friction_counts(feti_problem *p, int64_t *nodes, int32_t *dim);
 #define FETI_QUAD8 6
 /** Shape of a face in space: a quadrilateral with 9 nodes. */
 #define FETI_QUAD9 7
+/** In place of the shape of a face: a point, one node of a cloud. */
+#define FETI_POINT 8
 /** Shape of a rigid surface: a plane; data: a point, the outward normal. */
 #define FETI_PLANE 11
 /** Shape of a rigid surface: a sphere, in the plane a circle; data: the centre, the radius. */
@@ -918,12 +920,13 @@ int32_t feti_friction_counts(feti_problem *p, int64_t *nodes, int32_t *dim);
  * Adds a surface over nodes of a mesh, with 32-bit indices.
  *
  * Its faces come by feti_surface_faces_i32. You may give all nodes of a mesh: nodes in no face are left
- * out. A surface without faces is a cloud of points: it may be the slave of a pair, but it has no areas,
- * no pressures, and no normals by which the library could leave out faces that look the other way. Nodes
- * may share unknowns. Without `dof` the surface is a tool that only the host moves; it can be the master
- * of a pair, not the slave. The positions are those at which K was assembled; feti_surface_move gives new
- * ones. On several ranks a surface names unknowns of its rank (FETI_UNSUPPORTED). FETI_STATE with FETI_ALL
- * if some bodies have numbers of the host and others have none.
+ * out. A surface without faces is a cloud of points, all its nodes or those of FETI_POINT: it may be the
+ * slave of a pair, but it has no areas, no pressures, and no normals by which the library could leave out
+ * faces that look the other way. Nodes may share unknowns. Without `dof` the surface is a tool that only
+ * the host moves; it can be the master of a pair, not the slave. The positions are those at which K was
+ * assembled; feti_surface_move gives new ones. On several ranks a surface names unknowns of its rank
+ * (FETI_UNSUPPORTED). FETI_STATE with FETI_ALL if some bodies have numbers of the host and others have
+ * none.
  *
  * @param      body    number of the body, from 0, or FETI_ALL
  * @param      dim     dimensions, 2 or 3
@@ -958,12 +961,13 @@ int32_t feti_surface_add_i64(feti_problem *p, int64_t body, int32_t dim, int64_t
  * than .4 of the length of its edge from the middle of the edge's chord (a quarter-point node has .25), a
  * centre further than .4 of the longest edge from the middle of the face, an edge that three faces share,
  * two neighbours that disagree about which side is outside. These are checked at the positions that the
- * surface has now, not again after feti_surface_move. Give both sides of a shell as two surfaces.
- * FETI_STATE if a pair has the surface: faces come before pairs.
+ * surface has now, not again after feti_surface_move. Give both sides of a shell as two surfaces. Nodes by
+ * FETI_POINT make the surface a cloud of these nodes alone; points and faces do not mix. FETI_STATE if a
+ * pair has the surface: faces come before pairs.
  *
  * @param surface number of the surface, from 0
- * @param shape   FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8 or FETI_QUAD9, with
- *                k = 2, 3, 3, 6, 4, 8, 9 nodes
+ * @param shape   FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8, FETI_QUAD9 or
+ *                FETI_POINT, with k = 2, 3, 3, 6, 4, 8, 9, 1 nodes
  * @param faces   number of faces
  * @param node    (k * faces) nodes of the surface, face after face, counted from `base`
  * @param base    0 or 1: what `node` counts from

@@ -4,8 +4,8 @@ use crate::boundary::{
     base_of, call, column_major, count, enter, id, input, meaning, numbers, twins, Output,
 };
 use crate::header::types::{
-    feti_problem, FETI_ALL, FETI_CYLINDER, FETI_LINE2, FETI_LINE3, FETI_PLANE, FETI_QUAD4, FETI_QUAD8,
-    FETI_QUAD9, FETI_SPHERE, FETI_TRI3, FETI_TRI6,
+    feti_problem, FETI_ALL, FETI_CYLINDER, FETI_LINE2, FETI_LINE3, FETI_PLANE, FETI_POINT, FETI_QUAD4,
+    FETI_QUAD8, FETI_QUAD9, FETI_SPHERE, FETI_TRI3, FETI_TRI6,
 };
 use feti_contact::error::{Error, Result};
 use feti_contact::solver::{RigidShape, Shape};
@@ -13,7 +13,7 @@ use feti_contact::solver::{RigidShape, Shape};
 twins! {
     /// Adds a surface over nodes of a mesh, with 32-bit indices.
     ///
-    /// Its faces come by feti_surface_faces_i32. You may give all nodes of a mesh: nodes in no face are left out. A surface without faces is a cloud of points: it may be the slave of
+    /// Its faces come by feti_surface_faces_i32. You may give all nodes of a mesh: nodes in no face are left out. A surface without faces is a cloud of points, all its nodes or those of FETI_POINT: it may be the slave of
     /// a pair, but it has no areas, no pressures, and no normals by which the library could leave out faces that look the other way. Nodes
     /// may share unknowns. Without `dof` the surface is a tool that only the host moves; it can be the master of a pair, not the slave.
     /// The positions are those at which K was assembled; feti_surface_move gives new ones. On several
@@ -69,13 +69,14 @@ twins! {
     /// the square of its longest edge), a quadrilateral whose corners cross, a mid node further than .4 of the length of its edge from the
     /// middle of the edge's chord (a quarter-point node has .25), a centre further than .4 of the longest edge from the middle of the face,
     /// an edge that three faces share, two neighbours that disagree about which side is outside. These are checked at the positions that the surface
-    /// has now, not again after feti_surface_move. Give both sides of a shell as two surfaces. FETI_STATE if a pair has the surface: faces come before pairs.
+    /// has now, not again after feti_surface_move. Give both sides of a shell as two surfaces. Nodes by FETI_POINT make the surface a cloud of these nodes
+    /// alone; points and faces do not mix. FETI_STATE if a pair has the surface: faces come before pairs.
     ///
     /// | argument | in/out | shape | rule |
     /// |---|---|---|---|
     /// | `p` | in | scalar | the handle |
     /// | `surface` | in | scalar | number of the surface, from 0 |
-    /// | `shape` | in | scalar | FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8 or FETI_QUAD9, with k = 2, 3, 3, 6, 4, 8, 9 nodes |
+    /// | `shape` | in | scalar | FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8, FETI_QUAD9 or FETI_POINT, with k = 2, 3, 3, 6, 4, 8, 9, 1 nodes |
     /// | `faces` | in | scalar | number of faces |
     /// | `node` | in | k * faces | nodes of the surface, face after face, counted from `base` |
     /// | `base` | in | scalar | 0 or 1: what `node` counts from |
@@ -88,13 +89,17 @@ twins! {
         enter(p, call, |problem| {
             let (surface, shape) = (id(surface, "surface")?, face_shape(shape)?);
             let (faces, base) = (count(faces, "faces")?, base_of(base)?);
-            let entries = faces.checked_mul(shape.nodes()).filter(|entries| *entries <= isize::MAX as usize / 8);
+            let nodes = shape.map_or(1, Shape::nodes);
+            let entries = faces.checked_mul(nodes).filter(|entries| *entries <= isize::MAX as usize / 8);
             let entries = entries.ok_or_else(|| Error::argument("faces", format!("no array has the nodes of {faces} faces")))?;
             problem.surface_sizes(surface)?;
             // SAFETY: as many numbers as the faces have nodes guaranteed by the caller.
             let node = unsafe { numbers(node, entries, base, "node") }?;
-            problem.surface_faces(surface, shape, &node).map_err(|error| error.index_from(base))?;
-            Ok(())
+            match shape {
+                Some(shape) => problem.surface_faces(surface, shape, &node).map(|_| ()),
+                None => problem.surface_points(surface, &node),
+            }
+            .map_err(|error| error.index_from(base))
         })
     }
 }
@@ -211,17 +216,19 @@ fn dimensions(dim: i32) -> Result<usize> {
     meaning(dim, "dim", &[(2, 2), (3, 3)], "a surface has 2 or 3 dimensions")
 }
 
-fn face_shape(shape: i32) -> Result<Shape> {
+/// None: a point.
+fn face_shape(shape: i32) -> Result<Option<Shape>> {
     let known = [
-        (FETI_LINE2, Shape::Line2),
-        (FETI_LINE3, Shape::Line3),
-        (FETI_TRI3, Shape::Tri3),
-        (FETI_TRI6, Shape::Tri6),
-        (FETI_QUAD4, Shape::Quad4),
-        (FETI_QUAD8, Shape::Quad8),
-        (FETI_QUAD9, Shape::Quad9),
+        (FETI_LINE2, Some(Shape::Line2)),
+        (FETI_LINE3, Some(Shape::Line3)),
+        (FETI_TRI3, Some(Shape::Tri3)),
+        (FETI_TRI6, Some(Shape::Tri6)),
+        (FETI_QUAD4, Some(Shape::Quad4)),
+        (FETI_QUAD8, Some(Shape::Quad8)),
+        (FETI_QUAD9, Some(Shape::Quad9)),
+        (FETI_POINT, None),
     ];
-    meaning(shape, "shape", &known, "no shape of a face from FETI_LINE2 to FETI_QUAD9")
+    meaning(shape, "shape", &known, "no shape of a face from FETI_LINE2 to FETI_QUAD9, and not FETI_POINT")
 }
 
 fn rigid_shape(shape: i32) -> Result<RigidShape> {

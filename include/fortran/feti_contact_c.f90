@@ -534,6 +534,8 @@ module feti_contact_c
   integer(c_int32_t), parameter :: FETI_QUAD8 = 6_c_int32_t
   !> Shape of a face in space: a quadrilateral with 9 nodes.
   integer(c_int32_t), parameter :: FETI_QUAD9 = 7_c_int32_t
+  !> In place of the shape of a face: a point, one node of a cloud.
+  integer(c_int32_t), parameter :: FETI_POINT = 8_c_int32_t
   !> Shape of a rigid surface: a plane; data: a point, the outward normal.
   integer(c_int32_t), parameter :: FETI_PLANE = 11_c_int32_t
   !> Shape of a rigid surface: a sphere, in the plane a circle; data: the centre, the radius.

@@ -29,8 +29,8 @@ module feti_contact_surfaces
   !>
   !> call feti_surface_faces(p, surface, shape, node): node int32 or int64, a column for each face.
   !>
-  !> surface: number of the surface, from 1. shape: FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8
-  !> or FETI_QUAD9, with k = 2, 3, 3, 6, 4, 8, 9 nodes.
+  !> surface: number of the surface, from 1. shape: FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4,
+  !> FETI_QUAD8, FETI_QUAD9 or FETI_POINT, with k = 2, 3, 3, 6, 4, 8, 9, 1 nodes.
   interface surface_faces
     module procedure faces_int32, faces_int64
   end interface
@@ -168,7 +168,7 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
 
-    if (any([2, 3, 3, 6, 4, 8, 9] /= size(node, 1) .and. [1, 2, 3, 4, 5, 6, 7] == shape)) then
+    if (any([2, 3, 3, 6, 4, 8, 9, 1] /= size(node, 1) .and. [1, 2, 3, 4, 5, 6, 7, 8] == shape)) then
       call refuse(5, 'feti_surface_faces: node has not as many rows as the shape has nodes', stat, errmsg)
     else
       call finish(feti_surface_faces_i32(handle_of(p), int(surface - 1, c_int64_t), shape, size(node, 2, c_int64_t), &
@@ -185,7 +185,7 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
 
-    if (any([2, 3, 3, 6, 4, 8, 9] /= size(node, 1) .and. [1, 2, 3, 4, 5, 6, 7] == shape)) then
+    if (any([2, 3, 3, 6, 4, 8, 9, 1] /= size(node, 1) .and. [1, 2, 3, 4, 5, 6, 7, 8] == shape)) then
       call refuse(5, 'feti_surface_faces: node has not as many rows as the shape has nodes', stat, errmsg)
     else
       call finish(feti_surface_faces_i64(handle_of(p), int(surface - 1, c_int64_t), shape, size(node, 2, c_int64_t), &

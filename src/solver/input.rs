@@ -159,6 +159,9 @@ input! {
     /// go counterclockwise; in the plane the body is on the left. A surface without faces is a cloud of points, which may be a slave.
     fn surface_faces(&mut self, surface: usize, shape: Shape, node: &[i64]) -> Result<usize>;
 
+    /// Makes a surface a cloud of these nodes alone; more calls add nodes.
+    fn surface_points(&mut self, surface: usize, node: &[i64]) -> Result<()>;
+
     /// Adds a rigid plane (point, outward normal), sphere or circle (centre, radius) or cylinder (point, axis, radius); with a radius below 0
     /// the body is outside of it.
     fn surface_rigid(&mut self, dim: usize, shape: RigidShape, data: &[f64]) -> Result<usize>;

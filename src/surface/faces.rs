@@ -10,6 +10,8 @@ use crate::surface::vector::{angle, cross, length, minus, plus, unit, Vector, ZE
 
 /// No face, no node, no neighbour.
 pub const NONE: u32 = u32::MAX;
+/// In place of its first place: a point of a cloud, in no face.
+const POINT: u32 = NONE - 1;
 const WHAT: &str = "a surface";
 /// Edges of a face at most; a neighbour is written as face x `EDGES` + edge.
 const EDGES: u32 = 4;
@@ -26,7 +28,7 @@ pub struct Faces {
     node: Vec<u32>,
     /// At the place of corner k the face and edge beyond edge k, `NONE` at a rim; unused places are `NONE`.
     beyond: Vec<u32>,
-    /// Of every node its first place in `node`, `NONE` in no face.
+    /// Of every node its first place in `node`; in no face `NONE`, or `POINT`.
     first: Vec<u32>,
     /// Whether a node lies on an edge of one face only.
     rim: Vec<bool>,
@@ -71,7 +73,7 @@ impl Faces {
         self.rim[node as usize]
     }
 
-    /// The nodes in some face, ascending.
+    /// The nodes in some face, or the points, ascending.
     pub fn used(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.nodes as u32).filter(|&node| self.first[node as usize] != NONE)
     }
@@ -80,7 +82,7 @@ impl Faces {
     pub fn first_face(&self, node: u32) -> Option<(usize, usize)> {
         let place = self.first[node as usize];
         let face = self.start.partition_point(|&start| start <= place).checked_sub(1)?;
-        (place != NONE).then(|| (face, (place - self.start[face]) as usize))
+        (place < POINT).then(|| (face, (place - self.start[face]) as usize))
     }
 
     /// Adds faces of one shape, `node` counting from 0, at positions x; returns the number of the first. An error changes nothing.
@@ -91,11 +93,38 @@ impl Faces {
         Ok(first)
     }
 
+    /// These nodes, counting from 0, become points of a cloud; without any call all nodes are.
+    pub fn with_points(&self, node: &[i64]) -> Result<Self> {
+        if self.len() > 0 {
+            return Err(Error::argument("shape", "the surface has faces, and points do not join them"));
+        }
+        let mut all = self.with_room(0, 0)?;
+        for (k, &number) in node.iter().enumerate() {
+            let node = self.known(number).map_err(|error| error.entry(k))?;
+            all.first[node as usize] = POINT;
+        }
+        Ok(all)
+    }
+
+    /// The node of this number.
+    fn known(&self, number: i64) -> Result<u32> {
+        u32::try_from(number).ok().filter(|&node| (node as usize) < self.nodes).ok_or_else(|| {
+            let what = format!("node {INDEX} does not exist: the surface has {} nodes", self.nodes);
+            Error::argument("node", what).index(number)
+        })
+    }
+
     /// These faces and further ones of one shape, `node` counting from 0, at positions x.
     pub fn with(&self, shape: Shape, node: &[i64], x: &[Vector]) -> Result<Self> {
         if shape.dim() != self.dim {
             let what = format!("{} is no face in {} dimensions", shape.name(), self.dim);
             return Err(Error::argument("shape", what));
+        }
+        if self.first.contains(&POINT) {
+            return Err(Error::argument(
+                "shape",
+                "the surface is a cloud of points, which faces do not join",
+            ));
         }
         let (k, first) = (shape.nodes(), self.len());
         if node.len() % k != 0 {
@@ -137,11 +166,7 @@ impl Faces {
     fn push(&mut self, shape: Shape, given: &[i64], x: &[Vector]) -> Result<()> {
         let mut nodes = [0u32; shape::MOST];
         for (k, &number) in given.iter().enumerate() {
-            let known = u32::try_from(number).ok().filter(|&node| (node as usize) < self.nodes);
-            nodes[k] = known.ok_or_else(|| {
-                let what = format!("node {INDEX} does not exist: the surface has {} nodes", self.nodes);
-                Error::argument("node", what).index(number).entry(k)
-            })?;
+            nodes[k] = self.known(number).map_err(|error| error.entry(k))?;
         }
         let (shape, nodes) = without_last_corner(shape, &nodes);
         let nodes = &nodes[..shape.nodes()];

@@ -25,6 +25,8 @@ pub const FETI_QUAD4: i32 = 5;
 pub const FETI_QUAD8: i32 = 6;
 /// Shape of a face in space: a quadrilateral with 9 nodes.
 pub const FETI_QUAD9: i32 = 7;
+/// In place of the shape of a face: a point, one node of a cloud.
+pub const FETI_POINT: i32 = 8;
 /// Shape of a rigid surface: a plane; data: a point, the outward normal.
 pub const FETI_PLANE: i32 = 11;
 /// Shape of a rigid surface: a sphere, in the plane a circle; data: the centre, the radius.

@@ -45,6 +45,20 @@ impl HostModel {
     }
 
     pub fn surface_faces(&mut self, surface: usize, shape: Shape, node: &[i64]) -> Result<usize> {
+        let (faces, x) = self.faces_before_pairs(surface)?;
+        let first = faces.len();
+        *faces = Arc::new(faces.with(shape, node, x)?);
+        Ok(first)
+    }
+
+    pub fn surface_points(&mut self, surface: usize, node: &[i64]) -> Result<()> {
+        let (faces, _) = self.faces_before_pairs(surface)?;
+        *faces = Arc::new(faces.with_points(node)?);
+        Ok(())
+    }
+
+    /// The faces of a surface that no pair has, and its positions.
+    fn faces_before_pairs(&mut self, surface: usize) -> Result<(&mut Arc<Faces>, &[Vector])> {
         self.pairs.surface(surface, "surface")?;
         let used = |pair: &Pair| pair.slave == surface || pair.master == surface;
         if self.pairs.pairs.iter().any(used) {
@@ -52,11 +66,7 @@ impl HostModel {
             return Err(Error::new(Kind::State, what).index(surface as i64));
         }
         match &mut self.pairs.surfaces[surface] {
-            Geometry::Nodes { faces, x, .. } => {
-                let first = faces.len();
-                *faces = Arc::new(faces.with(shape, node, x)?);
-                Ok(first)
-            }
+            Geometry::Nodes { faces, x, .. } => Ok((faces, x)),
             Geometry::Rigid { .. } => Err(Error::argument("surface", "a rigid surface has no faces")),
         }
     }

@@ -66,7 +66,7 @@ impl Geometry {
         }
     }
 
-    /// The nodes of its faces, ascending; of a cloud all nodes.
+    /// The nodes of its faces or its points, ascending; of a surface without either all nodes.
     pub fn slave_nodes(&self) -> Result<Vec<u32>> {
         let refused = |what: &str| Err(Error::argument("slave", what));
         let Self::Nodes { faces, unknowns, .. } = self else {
@@ -79,9 +79,9 @@ impl Geometry {
             return refused("this surface has no nodes");
         }
         let mut nodes = reserved(faces.nodes, WHAT)?;
-        match faces.len() {
-            0 => nodes.extend(0..faces.nodes as u32),
-            _ => nodes.extend(faces.used()),
+        nodes.extend(faces.used());
+        if nodes.is_empty() {
+            nodes.extend(0..faces.nodes as u32);
         }
         Ok(nodes)
     }

@@ -114,3 +114,20 @@ fn normals_of_nodes_weigh_faces_by_their_angles() {
     let diagonal = -(1.0f64 / 3.0).sqrt();
     assert!(normals[0].iter().all(|v| (v - diagonal).abs() < 1e-15), "{normals:?}");
 }
+
+#[test]
+fn points_and_faces_do_not_mix() {
+    let mut all = faces(3);
+    all.add(Shape::Quad4, &[0, 1, 4, 3], &nodes()).unwrap();
+    assert_eq!(all.with_points(&[8]).unwrap_err().kind, Kind::Argument("shape"));
+    let cloud = faces(3).with_points(&[8, 2]).unwrap().with_points(&[5]).unwrap();
+    assert_eq!((cloud.used().collect::<Vec<_>>(), cloud.len()), (vec![2, 5, 8], 0));
+    assert!(cloud.first_face(8).is_none());
+    let error = cloud.with_points(&[3, 9]).unwrap_err();
+    assert_eq!(
+        (error.kind, error.place.index, error.place.entry),
+        (Kind::Argument("node"), Some(9), Some(1))
+    );
+    let error = cloud.with(Shape::Quad4, &[0, 1, 4, 3], &nodes()).unwrap_err();
+    assert_eq!(error.kind, Kind::Argument("shape"));
+}

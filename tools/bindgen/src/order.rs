@@ -54,7 +54,7 @@ pub const SECTIONS: [Section; 23] = [
         feti_friction_counts,
     ]),
     section!("Surfaces", "Give surfaces with positions and faces, in place of rows of your own.", [
-        FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8, FETI_QUAD9, FETI_PLANE, FETI_SPHERE, FETI_CYLINDER,
+        FETI_LINE2, FETI_LINE3, FETI_TRI3, FETI_TRI6, FETI_QUAD4, FETI_QUAD8, FETI_QUAD9, FETI_POINT, FETI_PLANE, FETI_SPHERE, FETI_CYLINDER,
         feti_surface_add_i32, feti_surface_add_i64, feti_surface_faces_i32, feti_surface_faces_i64, feti_surface_rigid, feti_surface_move,
         feti_surface_counts,
     ]),

@@ -203,6 +203,33 @@ fn a_cloud_of_points_carries_forces() {
     assert_eq!(problem.pair_field(made, PairField::Pressure).unwrap(), [0.0; 4]);
 }
 
+/// The same answer if the cloud is named by nodes of the whole mesh, in any order, and a point twice.
+#[test]
+fn points_of_a_mesh_are_a_cloud() {
+    let forces = |of_mesh: bool| {
+        let upper = block(&[0.0, 0.0], &[2.0, 1.0], &[3, 2], |x| x[1] == 1.0);
+        let mut problem = Problem::new();
+        let body = upper.give(&mut problem);
+        let foot = upper.side(false);
+        let of = |node: &usize| 2 * node..2 * node + 2;
+        let x: Vec<f64> = foot.iter().flat_map(|node| upper.x[of(node)].to_vec()).collect();
+        let dof: Vec<i64> = foot.iter().flat_map(|node| upper.dof[of(node)].to_vec()).collect();
+        let (x, dof) = if of_mesh { (&upper.x, &upper.dof) } else { (&x, &dof) };
+        let cloud = problem.surface_add(Some(body), 2, x, 2, Some((dof, 2))).unwrap();
+        if of_mesh {
+            let named: Vec<i64> = foot.iter().rev().chain(&foot[..1]).map(|node| *node as i64).collect();
+            problem.surface_points(cloud, &named).unwrap();
+        }
+        let tool = problem.surface_add(None, 2, &[-1.0, 0.01, 3.0, 0.01], 2, None).unwrap();
+        problem.surface_faces(tool, Shape::Line2, &[1, 0]).unwrap();
+        pair(&mut problem, cloud, tool, 0.1);
+        problem.pairs_find().unwrap();
+        problem.solve().unwrap();
+        problem.multipliers(RowKind::Inequality).unwrap()
+    };
+    assert_eq!(forces(true), forces(false));
+}
+
 /// 1/k = compliance / area: the foot yields by compliance x pressure.
 #[test]
 fn a_compliant_face_yields_by_its_pressure() {
