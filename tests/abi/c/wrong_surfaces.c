@@ -109,6 +109,10 @@ static void faces(feti_problem *p)
     OK(feti_surface_faces_i32(p, CUBE, FETI_QUAD4, 1, front, 0));
     REFUSED_AT(5, 2, NONE, feti_surface_faces_i32(p, CUBE, FETI_TRI3, 1, third, 0));
     OK(feti_surface_faces_i32(p, CUBE, FETI_QUAD4, 1, against, 0));
+    REFUSED(3, feti_surface_faces_i32(p, CUBE, FETI_POINT, 4, bottom, 0));
+    REFUSED(5, feti_surface_faces_i32(p, TOOL, FETI_POINT, 2, below, 0));
+    OK(feti_surface_faces_i32(p, TOOL, FETI_POINT, 2, LINE, 0));
+    REFUSED(3, feti_surface_faces_i32(p, TOOL, FETI_LINE2, 1, LINE, 0));
     REFUSED(3, feti_surface_faces_i32(p, CUBE, 0, 1, bottom, 0));
     REFUSED(3, feti_surface_faces_i32(p, CUBE, FETI_PLANE, 1, bottom, 0));
     REFUSED(3, feti_surface_faces_i32(p, CUBE, FETI_LINE2, 1, bottom, 0));
