@@ -69,7 +69,10 @@ def last_error(status: int) -> FetiError:
 
 def call(name: str, *arguments) -> int:
     """Calls feti_NAME; a status below 0 is a FetiError. Arguments as ctypes takes them."""
-    status = getattr(LIBRARY, "feti_" + name)(*arguments)
+    try:
+        status = getattr(LIBRARY, "feti_" + name)(*arguments)
+    except ctypes.ArgumentError as wrong:
+        raise TypeError(f"feti_{name}: {wrong}") from None
     if status < 0:
         raise last_error(status)
     return status

@@ -10,7 +10,7 @@ import warnings
 
 import numpy as np
 import scipy.sparse as sp
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -80,19 +80,12 @@ def calls(data):
 
 def run(seconds):
     warnings.simplefilter("ignore")
-    begin = time.monotonic()
-
-    def test(data):
-        if time.monotonic() - begin < seconds:
-            calls(data)
-
-    # rounds, each of which begins anew: hypothesis remembers what it has tried
-    quiet = settings(max_examples=200, deadline=None, database=None, suppress_health_check=list(HealthCheck))
-    rounds = 0
-    while time.monotonic() - begin < seconds:
-        quiet(given(st.data())(test))()
+    quiet = settings(max_examples=50, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+    end, rounds = time.monotonic() + seconds, 0
+    while time.monotonic() < end:  # the same rounds on every run
+        seed(rounds)(quiet(given(st.data())(lambda data: calls(data))))()
         rounds += 1
-    print(rounds, "rounds")
+    print(rounds, "rounds of 50 problems")
 
 
 def test_any_calls_leave_the_interpreter_alive():
