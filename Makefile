@@ -1,7 +1,8 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
 # make gallery   runs the demo and renders the pictures of docs/gallery.md from its results (the first time 700 MB in build/gallery)
 # make quick     after every change: unit tests, claims but for the three slowest, documents; make driver  NAME=c_settings: one driver
-# make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
+# make test      every test: Rust, C and Fortran under CMake, Python     make install    PREFIX=/usr/local DESTDIR=
+# make python    the Python package in an environment of its own below build, and its tests; SECONDS=600: hypothesis for ten minutes
 # make metis     tests with the feature metis                          make ranks      Rust tests with bodies lent to other ranks
 # make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls file" picks some
 # make sanitize  C and Fortran drivers under AddressSanitizer     make loom      registry and pools in all orders of two threads
@@ -43,7 +44,7 @@ RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO
 STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery rungs bits ranks test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling spooles paper docs
-.PHONY: quick gallery driver man deb mpi mpi-short hosts hosts-python
+.PHONY: quick gallery driver man deb mpi mpi-short hosts hosts-python python
 .PHONY: abi licences numbers vary packaging release stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -210,6 +211,19 @@ test:
 	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data
 	cmake --build build/ctest -j 2
 	ctest --test-dir build/ctest --output-on-failure -j 2
+	@$(MAKE) --no-print-directory python
+
+# The Python package, its library by the profile release, which `make lib` has built already.
+PYTHON := build/python
+$(PYTHON)/installed: python/tests/requirements.txt
+	@tools/setup.sh
+	python3 -m venv --clear $(@D)
+	$(@D)/bin/pip install --quiet --requirement $<
+	touch $@
+
+python: $(PYTHON)/installed
+	CARGO=$(CARGO) $(PYTHON)/bin/pip install --quiet --no-build-isolation --no-deps --force-reinstall ./python
+	$(PYTHON)/bin/python -B -m pytest -q -p no:cacheprovider python/tests
 
 # One driver of tests/abi, after a first `make test`, which installs what CMake looks for.
 driver: stage data
