@@ -260,6 +260,7 @@ hosts: stage
 	python3 adapters/calculix/run.py build/hosts/calculix $(STAGE) docs/hosts/calculix.md
 
 hosts-python: export FETI_CONTACT_LIBRARY = $(STAGE)/lib/libfeti_contact.so
+hosts-python: export PYTHONPATH = $(CURDIR)/python
 hosts-python: export PYTHONDONTWRITEBYTECODE = 1
 hosts-python: stage $(HOSTS)/installed
 	@tools/setup.sh python3-getfem

@@ -18,7 +18,7 @@ from sfepy.mechanics.matcoefs import stiffness_from_youngpoisson
 from sfepy.mesh.mesh_generators import gen_block_mesh
 from sfepy.terms import Term
 
-import feti
+import feti_contact as fc
 
 YOUNG, POISSON, FRICTION = 1000.0, 0.3, 0.3  # MPa, -, -
 WEIGHT, WIDE = 8.0, 2.0  # N, mm: edges of the upper block, 1 mm high
@@ -61,47 +61,41 @@ def problem(domain, push):
 
 
 # ---- what an owner of a program with SfePy writes, from here ...
-def add_surface(p, body, domain, region, number):
+def add_surface(body, domain, region, number):
     """Gives the library the facets of a region; `number` (nodes, 3): unknown in K, below 0 where held."""
     mesh, facets = domain.cmesh, region.facets
     mesh.setup_connectivity(2, 0), mesh.setup_connectivity(2, 3)
     faces = mesh.get_incident(0, facets, 2).reshape(len(facets), 4).astype(np.int32)
     inside = mesh.get_centroids(3)[mesh.get_incident(3, facets, 2)]  # a facet of a surface has one element
-    surface = p.surface_add_i32(body, 3, len(mesh.coors), mesh.coors, 3, number, 3, 0)
-    p.surface_faces_i32(surface, feti.QUAD4, len(faces), feti.outward(faces, mesh.coors, inside), 0)
-    return surface
+    return body.surface(mesh.coors, number, fc.outward(faces, mesh.coors, inside))
 
 
 class Contact:
     """SfePy has K and the residual, the library finds the increment of u."""
 
     def __init__(self, pb, slave, master):
-        self.pb, self.evaluator, self.p = pb, pb.get_evaluator(), feti.Problem()
+        self.pb, self.evaluator, self.p = pb, pb.get_evaluator(), fc.Problem()
         numbers = pb.get_variables()["u"].eq_map  # .eq: unknown in K, below 0 where held
         self.u = np.zeros(numbers.n_eq)
-        k = self.evaluator.eval_tangent_matrix(self.u)
-        body = self.p.body_add(self.u.size)  # one K for both blocks: the library finds its parts
-        self.p.body_stiffness_i32(body, self.u.size, k.indptr, k.indices, k.data, 0, feti.FULL, feti.COPY)
-        self.surfaces = [add_surface(self.p, body, pb.domain, region, numbers.eq.reshape(-1, 3)) for region in (slave, master)]
-        self.pair = self.p.pair_add(*self.surfaces, feti.NODE_TO_FACE, 0.1)
-        self.p.pair_set_f64(self.pair, b"friction", 1, np.array([FRICTION]))
+        body = self.p.add_body(self.evaluator.eval_tangent_matrix(self.u))  # one K for both blocks: the library finds its parts
+        self.surfaces = [add_surface(body, pb.domain, region, numbers.eq.reshape(-1, 3)) for region in (slave, master)]
+        self.pair = self.p.add_pair(*self.surfaces, distance=0.1, method="node_to_face", friction=FRICTION)
 
     def step(self):
-        """Goes to equilibrium with the present loads, one step after the last; feti.Error if there is none."""
+        """Goes to equilibrium with the present loads, one step after the last; fc.FetiError if there is none."""
         self.pb.update_materials()
-        self.p.pairs_commit()
-        increment = np.empty(self.u.size)
+        self.p.commit_pairs()
         for _ in range(20):
-            self.p.pairs_find()
-            self.p.body_load(feti.ALL, self.u.size, -self.evaluator.eval_residual(self.u))
+            self.p.find_pairs()
+            self.p.load(-self.evaluator.eval_residual(self.u))
             info = self.p.solve()
-            self.p.displacement(feti.ALL, self.u.size, increment)
+            increment = self.p.displacement()
             self.u += increment
             now = self.pb.domain.mesh.coors + self.evaluator.make_full_vec(self.u).reshape(-1, 3)
             for surface in self.surfaces:
-                self.p.surface_move(surface, now, 3)
+                surface.move(now)
             if np.abs(increment).max() < 1e-8 * WIDE:
-                return info, self.p.pair_info(self.pair)
+                return info, self.pair.info
         raise ArithmeticError("no equilibrium in 20 iterations")
 
 
@@ -117,7 +111,7 @@ def main():
         push[0] = part * limit / WIDE
         try:
             info, facts = contact.step()
-        except feti.Error as error:
+        except fc.FetiError as error:
             good &= part > 1 and error.name == "FETI_LOAD_NOT_HELD"
             print(f"  push {part:.2f} mu N: no forces balance it, {error.name}")
             continue

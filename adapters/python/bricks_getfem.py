@@ -13,7 +13,7 @@ import getfem as gf
 import numpy as np
 from scipy.sparse import csc_matrix
 
-import feti
+import feti_contact as fc
 
 gf.util("trace level", 0)
 
@@ -67,7 +67,7 @@ def by_brick(md, parts, friction):
 # ---- what an owner of a program with GetFEM writes, from here ...
 def by_library(md, parts, friction):
     """The same by the library, from the matrix of the model; last its facts on the solve."""
-    p, surfaces = feti.Problem(), []
+    p, surfaces = fc.Problem(), []
     md.assembly("build_matrix")
     pointers, rows = md.tangent_matrix().csc_ind()
     whole = csc_matrix((md.tangent_matrix().csc_val(), rows, pointers)).tocsr()
@@ -78,25 +78,19 @@ def by_library(md, parts, friction):
         u[held] = np.tile(way, len(held) // 2)
         number = np.full(n, -1, dtype=np.int32)  # of an unknown in the matrix of the body; -1: moved as prescribed
         number[free] = np.arange(free.size)
-        body, own = p.body_add(free.size), k[free][:, free]
-        p.body_stiffness_i32(body, free.size, own.indptr, own.indices, own.data, 0, feti.FULL, feti.COPY)
-        p.body_load(body, free.size, -(k @ u)[free])
+        body = p.add_body(k[free][:, free], load=-(k @ u)[free])
 
         x, of_point = np.ascontiguousarray(mesh.pts().T), np.empty((mesh.nbpts(), 2), int)
         of_point[mesh.pid_from_cvid()[0]] = mf.basic_dof_from_cvid()[0].reshape(-1, 2)  # unknowns of each point of the mesh
         cells, sides = mesh.region(region)
         faces = np.array([mesh.pid_in_faces([[c], [s]]) for c, s in zip(cells, sides)])
         inside = np.array([mesh.pts_from_cvid(c)[0].mean(axis=1) for c in cells])
-        surface = p.surface_add_i32(body, 2, len(x), x, 2, number[of_point], 2, 0)
-        p.surface_faces_i32(surface, feti.LINE2, len(faces), feti.outward(faces, x, inside), 0)
-        surfaces.append((surface, np.array(sorted(np.unique(faces), key=lambda node: of_point[node, 0])), len(x)))  # in the order of GetFEM
-    (slave, foot, nodes), (master, _, _) = surfaces
-    pair = p.pair_add(slave, master, feti.NODE_TO_FACE, 4 * DOWN)
-    p.pair_set_f64(pair, b"friction", 1, np.array([friction]))
-    p.pairs_find()
-    info, force, shear, area = p.solve(), np.empty(nodes), np.empty((nodes, 2)), np.empty(nodes)
-    for field, values in ((feti.FORCE, force), (feti.SHEAR, shear), (feti.AREA, area)):
-        p.pair_field(pair, field, values.size, values)
+        surface = body.surface(x, number[of_point], fc.outward(faces, x, inside))
+        surfaces.append((surface, np.array(sorted(np.unique(faces), key=lambda node: of_point[node, 0]))))  # in the order of GetFEM
+    (slave, foot), (master, _) = surfaces
+    pair = p.add_pair(slave, master, distance=4 * DOWN, method="node_to_face", friction=friction)
+    p.find_pairs()
+    info, force, shear, area = p.solve(), *map(pair.field, ("force", "shear", "area"))
     return force[foot], (shear[:, 0] * area)[foot], info
 
 

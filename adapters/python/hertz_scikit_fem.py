@@ -13,7 +13,7 @@ import numpy as np
 import skfem
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-import feti
+import feti_contact as fc
 
 YOUNG, POISSON, RADIUS, HALF_WIDTH, SIDE = 1000.0, 0.3, 100.0, 1.0, 12.0  # MPa, -, mm, mm, mm
 STIFF = YOUNG / (2 * (1 - POISSON**2))
@@ -43,32 +43,26 @@ def add_body(p, basis, stiffness, load, held, contact):
     """Gives the library K and f without the unknowns `held`, and the facets `contact` as a surface."""
     # ---- what an owner of a program with scikit-fem writes, from here ...
     k, f, _, free = skfem.condense(stiffness, load, D=held)
-    k = k.tocsr()
-    body = p.body_add(free.size)
-    p.body_stiffness_i32(body, free.size, k.indptr, k.indices, k.data, 0, feti.FULL, feti.COPY)
-    p.body_load(body, free.size, f)
+    body = p.add_body(k, load=f)
 
     mesh, number = basis.mesh, np.full(basis.N, -1, dtype=np.int32)
     number[free] = np.arange(free.size)  # of an unknown in K; -1: held
     nodes = np.hstack([basis.nodal_dofs, basis.facet_dofs])  # (2, nodes): unknowns of the corners, then of the mid nodes
-    x = np.ascontiguousarray(basis.doflocs[:, nodes[0]].T)  # (nodes, 2), mm
+    x = basis.doflocs[:, nodes[0]].T  # (nodes, 2), mm
     faces = np.vstack([mesh.facets[:, contact], mesh.nvertices + contact]).T
     inside = mesh.p[:, mesh.t[:, mesh.f2t[0, contact]]].mean(axis=1).T
-    surface = p.surface_add_i32(body, 2, len(x), x, 2, np.ascontiguousarray(number[nodes].T), 2, 0)
-    p.surface_faces_i32(surface, feti.LINE3, len(faces), feti.outward(faces, x, inside), 0)
-    return surface, x
+    return body.surface(x, number[nodes].T, fc.outward(faces, x, inside)), x
 
 
 def solve(bodies):
     """Pressure of each node of the first body (slave), its place, and what the library says of the pair and the solve."""
-    p = feti.Problem()
+    p = fc.Problem()
     (slave, x), (master, _) = [add_body(p, *body) for body in bodies]
-    pair = p.pair_add(slave, master, feti.MORTAR, HALF_WIDTH)
-    p.pairs_find()
-    info, pressure = p.solve(), np.empty(len(x))
-    p.pair_field(pair, feti.PRESSURE, pressure.size, pressure)
+    pair = p.add_pair(slave, master, distance=HALF_WIDTH)
+    p.find_pairs()
+    info, pressure = p.solve(), pair.field("pressure")
     # ---- ... to here
-    return x, pressure, p.pair_info(pair), info
+    return x, pressure, pair.info, info
 
 
 def main():

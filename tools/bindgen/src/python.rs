@@ -25,13 +25,21 @@ pub fn print(api: &Api) -> String {
     out.push_str("\nFUNCTIONS = {\n");
     for function in groups.iter().flat_map(|group| &group.functions) {
         let arguments: Vec<_> = function.arguments.iter().map(|a| passed(&a.ty)).collect();
-        let _ = writeln!(out, "    \"{}\": ({}, [{}]),", function.name, passed(&function.result), arguments.join(", "));
+        let _ = writeln!(
+            out,
+            "    \"{}\": ({}, [{}]),",
+            function.name,
+            passed(&function.result),
+            arguments.join(", ")
+        );
     }
     out + "}\n"
 }
 
 fn write_group(out: &mut String, group: &Group) {
-    let names = group.constants.len() + group.callbacks.len() + group.structs.iter().filter(|s| s.fields.is_some()).count();
+    let names = group.constants.len()
+        + group.callbacks.len()
+        + group.structs.iter().filter(|s| s.fields.is_some()).count();
     if names > 0 {
         let _ = writeln!(out, "\n# ==== {} ====", group.heading);
     }
@@ -39,7 +47,8 @@ fn write_group(out: &mut String, group: &Group) {
         let _ = writeln!(out, "{} = {}", constant.name, constant.value);
     }
     // functions of the host take structs, except those that are members of one
-    let (tables, structs): (Vec<_>, Vec<_>) = group.structs.iter().partition(|s| s.has_function(&group.callbacks));
+    let (tables, structs): (Vec<_>, Vec<_>) =
+        group.structs.iter().partition(|s| s.has_function(&group.callbacks));
     let write_struct = |out: &mut String, structure: &crate::model::Struct| {
         let Some(fields) = &structure.fields else { return };
         let _ = writeln!(out, "\n\nclass {}(Structure):\n    _fields_ = [", structure.name);
