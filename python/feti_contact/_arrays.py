@@ -1,6 +1,10 @@
 """Arrays and matrices as the library takes them: what fits is passed as it is, what loses digits is refused."""
 
+from ctypes import byref, c_int64
+
 import numpy as np
+
+from ._library import call
 
 
 def numbers(x, name, shape=None):
@@ -39,6 +43,27 @@ def at(a):
     """The address of an array for ctypes; None remains None. The caller keeps the array."""
     assert a is None or a.flags.c_contiguous
     return None if a is None else a.ctypes.data
+
+
+def filled(shape, name, *arguments, dtype=np.float64):
+    """An array of this shape that feti_NAME fills, its last argument."""
+    out = np.empty(shape, dtype)
+    call(name, *arguments, at(out))
+    return out
+
+
+def counted(name, *arguments):
+    """The number that feti_NAME writes to its last argument."""
+    out = c_int64()
+    call(name, *arguments, byref(out))
+    return out.value
+
+
+def reported(kind, name, *arguments):
+    """The report of this kind that feti_NAME writes to its last argument."""
+    out = kind()
+    call(name, *arguments, byref(out))
+    return out
 
 
 def is_sparse(matrix):

@@ -8,7 +8,7 @@ from typing import Any, Callable, Optional
 import numpy as np
 
 from . import _raw
-from ._arrays import at, compressed, fitting, integers, is_sparse, numbers, together
+from ._arrays import at, compressed, filled, fitting, integers, is_sparse, numbers, reported, together
 from ._library import call
 from ._records import BodyInfo, PairInfo
 
@@ -42,8 +42,12 @@ class Part:
     def __hash__(self):
         return hash((id(self.problem), self.number))
 
+    @property
+    def _place(self):
+        return self.problem._handle, self.number
+
     def _call(self, name, *arguments):
-        return call(name, self.problem._handle, self.number, *arguments)
+        return call(name, *self._place, *arguments)
 
 
 class Body(Part):
@@ -185,15 +189,12 @@ class Body(Part):
 
     def displacement(self) -> np.ndarray:
         """u (n) of the last answer, length."""
-        u = np.empty(self.n)
-        self._call("displacement", self.n, at(u))
-        return u
+        return filled(self.n, "displacement", *self._place, self.n)
 
     def reaction(self, kind: str = "all") -> np.ndarray:
         """Force of the rows on the body (n): K u = f + r; of one kind: "contact", "equality", "tangential"."""
-        r = np.empty(self.n)
-        call("reaction", self.problem._handle, one_of(KINDS, kind, "kind"), self.number, self.n, at(r))
-        return r
+        handle, number = self._place
+        return filled(self.n, "reaction", handle, one_of(KINDS, kind, "kind"), number, self.n)
 
     def motions(self) -> np.ndarray:
         """The null space that the library uses, (n, r); makes a setup if one is due."""
@@ -205,34 +206,25 @@ class Body(Part):
 
     def amplitudes(self) -> np.ndarray:
         """Amplitudes (r) of the motions in the last answer."""
-        alpha = np.empty(self.motions().shape[1])
-        self._call("amplitudes", alpha.size, at(alpha))
-        return alpha
+        r = self.motions().shape[1]
+        return filled(r, "amplitudes", *self._place, r)
 
     def held_forces(self, n: int) -> np.ndarray:
         """Forces on held unknowns 0 to n - 1 of a body given by elements: K_hf u."""
-        r = np.empty(n)
-        self._call("body_held_forces", n, at(r))
-        return r
+        return filled(n, "body_held_forces", *self._place, n)
 
     def pieces(self) -> np.ndarray:
         """Piece of each unknown (n), from 0; zeros for a body that is not cut."""
-        piece = np.empty(self.n, dtype=np.int64)
-        self._call("body_pieces", self.n, at(piece))
-        return piece
+        return filled(self.n, "body_pieces", *self._place, self.n, dtype=np.int64)
 
     def escape(self) -> np.ndarray:
         """Motion (n) of the body that moves away, after FETI_LOAD_NOT_HELD, FETI_SLIDES or FETI_INDEFINITE; largest entry of all bodies 1."""
-        v = np.empty(self.n)
-        self._call("diagnosis_motion", self.n, at(v))
-        return v
+        return filled(self.n, "diagnosis_motion", *self._place, self.n)
 
     @property
     def info(self) -> BodyInfo:
         """Sizes, memory, source of the null space, estimated error of the forces."""
-        facts = BodyInfo()
-        self._call("body_info", byref(facts))
-        return facts
+        return reported(BodyInfo, "body_info", *self._place)
 
     def surface(self, x, dof=None, faces=()) -> Surface:
         """A surface over nodes of the body: see Problem.add_surface."""
@@ -277,16 +269,13 @@ class Pair(Part):
         """force, pressure, gap, area, closed (nodes) or shear, slip, normal (nodes, dim) at the nodes of the slave; 0 without a partner."""
         if name not in FIELDS:
             raise ValueError(f"field {name!r}, not one of {', '.join(FIELDS)}")
-        values = np.empty(self.slave.shape if name in ("shear", "slip", "normal") else self.slave.shape[0])
-        self._call("pair_field", FIELDS.index(name) + 1, values.size, at(values))
-        return values
+        shape = self.slave.shape if name in ("shear", "slip", "normal") else self.slave.shape[:1]
+        return filled(shape, "pair_field", *self._place, FIELDS.index(name) + 1, int(np.prod(shape)))
 
     @property
     def info(self) -> PairInfo:
         """Resultant, counts of nodes, largest pressure, overlap."""
-        facts = PairInfo()
-        self._call("pair_info", byref(facts))
-        return facts
+        return reported(PairInfo, "pair_info", *self._place)
 
 
 def optional(x: Any, name: str, shape) -> Optional[np.ndarray]:

@@ -15,7 +15,7 @@ from typing import Any, Dict, Optional, Tuple, Union
 import numpy as np
 
 from . import _raw
-from ._arrays import at, constraint_rows, integers, numbers, rows_of, together
+from ._arrays import at, constraint_rows, counted, filled, integers, numbers, reported, rows_of, together
 from ._library import LIBRARY, FetiError, FetiWarning, call, interruptible
 from ._records import Certificate, Findings, Info, Progress
 from .parts import KINDS, METHODS, SHAPES, Body, Pair, Surface, one_of, optional
@@ -182,9 +182,7 @@ class Problem:
         n = K.shape[0] if n is None and K is not None else n
         if n is None:
             raise TypeError("add_body needs K or n")
-        number = c_int64()
-        call("body_add", self._handle, operator.index(n), byref(number))
-        body = Body(self, number.value, n)
+        body = Body(self, counted("body_add", self._handle, operator.index(n)), n)
         self._bodies.append(body)
         if K is not None:
             body.stiffness(K, storage, copy)
@@ -224,11 +222,10 @@ class Problem:
         m, ptr, body, dof, val = constraint_rows(rows, "rows")
         rhs, compliance = optional(rhs, "right-hand side", (m,)), optional(compliance, "compliance", (m,))
         (ptr, body, dof), ending = together(ptr, body, dof)
-        first = c_int64()
-        call(f"rows_add_{ending}", self._handle, KINDS[kind], m, at(ptr), at(body), at(dof), at(val), 0, at(rhs), byref(first))
+        first = counted(f"rows_add_{ending}", self._handle, KINDS[kind], m, at(ptr), at(body), at(dof), at(val), 0, at(rhs))
         if compliance is not None:
-            call("rows_compliance", self._handle, KINDS[kind], first.value, m, at(compliance))
-        return range(first.value, first.value + m)
+            self.set_compliance(kind, compliance, first)
+        return range(first, first + m)
 
     def add_contact(self, rows: Any, gap=None, compliance=None) -> range:
         """Contact rows B u <= c. rows: {body: B (m, unknowns of the body)}, or B over the unknowns of all bodies, one after the other, by
@@ -247,18 +244,13 @@ class Problem:
 
     def set_compliance(self, kind: str, inv_k, first: int = 0) -> None:
         """Replaces 1/k of rows from `first` on, length / force; of nodes with friction (kind "tangential") 1/k_t."""
-        inv_k = numbers(inv_k, "compliance", (None,))
-        if kind == "tangential":
-            call("friction_compliance", self._handle, first, inv_k.size, at(inv_k))
-        else:
-            call("rows_compliance", self._handle, one_of(KINDS, kind, "kind"), first, inv_k.size, at(inv_k))
+        inv_k, number = numbers(inv_k, "compliance", (None,)), one_of(KINDS, kind, "kind")
+        of = ("friction_compliance", self._handle) if kind == "tangential" else ("rows_compliance", self._handle, number)
+        call(*of, first, inv_k.size, at(inv_k))
 
     def clear(self, kind: str) -> None:
         """Removes all rows of a kind but those of pairs; "contact" also removes the nodes with friction, which "tangential" removes alone."""
-        if kind == "tangential":
-            call("friction_clear", self._handle)
-        else:
-            call("rows_clear", self._handle, one_of(KINDS, kind, "kind"))
+        call(*(("friction_clear", self._handle) if kind == "tangential" else ("rows_clear", self._handle, one_of(KINDS, kind, "kind"))))
 
     def add_friction(self, contact, rows: Any, coefficient=None, bound=None, compliance=None) -> range:
         """Nodes with friction, |lambda_t| <= bound + coefficient lambda_n. contact (nodes): number of the contact row of each node, -1: none.
@@ -272,12 +264,11 @@ class Problem:
             raise ValueError(f"rows: {m} for {nodes} nodes")
         law = [optional(x, name, (nodes,)) for x, name in ((coefficient, "coefficient"), (bound, "bound"), (compliance, "compliance"))]
         (contact, ptr, body, dof), ending = together(contact, ptr, body, dof)
-        first, dim = c_int64(), m // nodes if nodes else 1
         arrays = map(at, (contact, ptr, body, dof, val))
-        call(f"friction_add_{ending}", self._handle, nodes, dim, *arrays, 0, at(law[0]), at(law[1]), byref(first))
+        first = counted(f"friction_add_{ending}", self._handle, nodes, m // nodes if nodes else 1, *arrays, 0, at(law[0]), at(law[1]))
         if law[2] is not None:
-            call("friction_compliance", self._handle, first.value, nodes, at(law[2]))
-        return range(first.value, first.value + nodes)
+            self.set_compliance("tangential", law[2], first)
+        return range(first, first + nodes)
 
     def set_friction(self, coefficient=None, bound=None, first: int = 0, nodes: Optional[int] = None) -> None:
         """Replaces the law of nodes from `first` on: arrays, or a number for all."""
@@ -298,14 +289,13 @@ class Problem:
         list of such arrays; k = 2, 3 in the plane, 3, 6, 4, 8, 9 in space; the outside is where `outward` turns them."""
         x = numbers(x, "x", (None, None))
         dof = None if dof is None else integers(dof, "dof", x.shape, np.int64)
-        faces, number = [faces] if isinstance(faces, np.ndarray) else faces, c_int64()
-        faces = [integers(f, "faces", (None, None), np.int64) for f in faces]
+        faces = [integers(f, "faces", (None, None), np.int64) for f in ([faces] if isinstance(faces, np.ndarray) else faces)]
         shapes = [one_of(SHAPES, (x.shape[1], f.shape[1]), "dimensions and nodes of a face") for f in faces]
         of, dim = _raw.FETI_ALL if body is None else int(body), x.shape[1]
-        call("surface_add_i64", self._handle, of, dim, len(x), at(x), dim, at(dof), dim, 0, byref(number))
+        number = counted("surface_add_i64", self._handle, of, dim, len(x), at(x), dim, at(dof), dim, 0)
         for shape, nodes in zip(shapes, faces):
-            call("surface_faces_i64", self._handle, number.value, shape, len(nodes), at(nodes), 0)
-        return Surface(self, number.value, x.shape)
+            call("surface_faces_i64", self._handle, number, shape, len(nodes), at(nodes), 0)
+        return Surface(self, number, x.shape)
 
     def add_plane(self, point, normal) -> Surface:
         """A rigid plane through a point with its outward normal, in 2 or 3 dimensions."""
@@ -320,9 +310,8 @@ class Problem:
         return self._rigid(_raw.FETI_CYLINDER, 3, numbers(point, "point", (3,)), numbers(axis, "axis", (3,)), [radius])
 
     def _rigid(self, shape, dim, *data):
-        data, number = numbers(np.concatenate([np.atleast_1d(np.asarray(d)) for d in data]), "data", (None,)), c_int64()
-        call("surface_rigid", self._handle, dim, shape, at(data), byref(number))
-        return Surface(self, number.value, data.shape)
+        data = numbers(np.concatenate([np.atleast_1d(np.asarray(d)) for d in data]), "data", (None,))
+        return Surface(self, counted("surface_rigid", self._handle, dim, shape, at(data)), data.shape)
 
     def add_pair(self, slave: Surface, master: Surface, distance: float, method: str = "mortar", tied: bool = False, **numbers_by_name) -> Pair:
         """A pair that may meet; nodes up to `distance`, length, have a partner. method: "mortar" or "node_to_face"; keywords: see Pair.set."""
@@ -387,33 +376,29 @@ class Problem:
 
     def multipliers(self, kind: str = "contact") -> np.ndarray:
         """Forces of rows: lambda >= 0 (rows) of "contact", mu (rows) of "equality", lambda_t (nodes, dim) of "tangential"."""
-        values = np.empty(self._size(kind))
-        call("multipliers", self._handle, KINDS[kind], values.size, at(values))
+        size = self._size(kind)
+        values = filled(size, "multipliers", self._handle, KINDS[kind], size)
         return values.reshape(self._nodes()) if kind == "tangential" else values
 
     def gaps(self) -> np.ndarray:
         """Open gap c - B u (+ lambda/k) of each contact row, length."""
-        gap = np.empty(self._size("contact"))
-        call("gaps", self._handle, gap.size, at(gap))
-        return gap
+        rows = self._size("contact")
+        return filled(rows, "gaps", self._handle, rows)
 
     def active(self) -> np.ndarray:
         """State of each contact row: 0 open, 1 closed, 2 touches without a force, 3 unknown."""
-        state = np.empty(self._size("contact"), dtype=np.int32)
-        call("active", self._handle, state.size, at(state))
-        return state
+        rows = self._size("contact")
+        return filled(rows, "active", self._handle, rows, dtype=np.int32)
 
     def slips(self) -> np.ndarray:
         """Slip (nodes, dim) of the nodes with friction, length."""
-        slip = np.empty(self._nodes())
-        call("friction_slips", self._handle, *slip.shape, at(slip))
-        return slip
+        shape = self._nodes()
+        return filled(shape, "friction_slips", self._handle, *shape)
 
     def friction_states(self) -> np.ndarray:
         """State of each node with friction: 0 open, 1 sticks, 2 slips, 3 at its bound without a slip, 4 unknown."""
-        state = np.empty(self._nodes()[0], dtype=np.int32)
-        call("friction_states", self._handle, state.size, at(state))
-        return state
+        nodes = self._nodes()[0]
+        return filled(nodes, "friction_states", self._handle, nodes, dtype=np.int32)
 
     def check(self, u=None, contact=None, equality=None, tangential=None) -> Certificate:
         """The certificate of an answer, by default the last one: u of all bodies, one after the other, and forces as multipliers gives them."""
@@ -435,9 +420,7 @@ class Problem:
     # ---- states, diagnosis
     def save(self) -> int:
         """Saves loads, rows, friction, forces; returns the number for restore and drop."""
-        number = c_int64()
-        call("state_save", self._handle, byref(number))
-        return number.value
+        return counted("state_save", self._handle)
 
     def restore(self, state: int) -> None:
         """Goes back to a saved state, which stays saved."""
@@ -449,9 +432,7 @@ class Problem:
 
     def diagnosis(self) -> Findings:
         """What the last solve, or the last failed setup, found out."""
-        findings = Findings()
-        call("diagnosis", self._handle, byref(findings))
-        return findings
+        return reported(Findings, "diagnosis", self._handle)
 
     def diagnosis_rows(self, kind: str = "contact") -> Tuple[np.ndarray, np.ndarray]:
         """Rows that contradict each other, or repeat another one, and their weights."""
@@ -463,9 +444,8 @@ class Problem:
 
     def phases(self) -> Dict[str, Tuple[float, int]]:
         """Seconds and bytes of each phase of the last setup or solve."""
-        count, phase, out = c_int64(), _raw.feti_phase(struct_size=ctypes.sizeof(_raw.feti_phase)), {}
-        call("phase_count", self._handle, byref(count))
-        for k in range(count.value):
+        phase, out = _raw.feti_phase(struct_size=ctypes.sizeof(_raw.feti_phase)), {}
+        for k in range(counted("phase_count", self._handle)):
             call("phase_at", self._handle, k, byref(phase))
             out[phase.name.decode()] = (phase.seconds, phase.bytes)
         return out
