@@ -70,6 +70,24 @@ def is_sparse(matrix):
     return hasattr(matrix, "tocsr")
 
 
+def as_csr(matrix, name):
+    """scipy ends the process if it converts a matrix whose indices are outside: they are checked before."""
+    if matrix.format == "coo":
+        for index, n in zip((matrix.row, matrix.col), matrix.shape):
+            if index.shape != matrix.data.shape or index.size and not 0 <= index.min() <= index.max() < n:
+                raise ValueError(f"{name}: rows or columns of the triplets are outside {matrix.shape}, or not as many as values")
+    elif matrix.format != "csr" and hasattr(matrix, "check_format"):
+        matrix.check_format(full_check=True)
+    return matrix.tocsr()
+
+
+def listed(x, name):
+    """A sequence of arrays; a sparse matrix is none."""
+    if is_sparse(x):
+        raise TypeError(f"{name}: a sparse matrix, not a sequence of arrays")
+    return list(x)
+
+
 def compressed(ptr, col, val, n, name):
     """Pointers, indices and values of a compressed matrix with n rows, of lengths that C may rely on."""
     ptr, col, val = integers(ptr, name + ".indptr", (n + 1,)), integers(col, name + ".indices", (None,)), numbers(val, name + ".data", (None,))
@@ -81,7 +99,7 @@ def compressed(ptr, col, val, n, name):
 def rows_of(matrix, name):
     """(row pointers, columns, values, rows, columns of all) of a scipy.sparse matrix or of a dense one; duplicates are summed by the library."""
     if is_sparse(matrix):
-        matrix = matrix.tocsr()
+        matrix = as_csr(matrix, name)
         ptr, col, val = compressed(matrix.indptr, matrix.indices, matrix.data, matrix.shape[0], name)
         return ptr, col, val, *matrix.shape
     dense = numbers(matrix, name)

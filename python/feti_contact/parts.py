@@ -8,7 +8,7 @@ from typing import Any, Callable, Optional
 import numpy as np
 
 from . import _raw
-from ._arrays import at, compressed, filled, fitting, integers, is_sparse, numbers, reported, together
+from ._arrays import as_csr, at, compressed, filled, fitting, integers, is_sparse, listed, numbers, reported, together
 from ._library import call
 from ._records import BodyInfo, PairInfo
 
@@ -76,7 +76,7 @@ class Body(Part):
             self._call(f"body_stiffness_triplets_{kind}", self.n, val.size, at(row), at(col), at(val), 0, STORAGE[storage], _raw.FETI_COPY)
         else:
             storage = TURNED[storage] if K.format == "csc" else storage  # rows of K' = K
-            K = K if K.format == "csc" else K.tocsr()
+            K = K if K.format == "csc" else as_csr(K, "K")
             ptr, col, val = compressed(K.indptr, K.indices, K.data, self.n, "K")
             (ptr, col), kind = together(ptr, col)
             self._call(f"body_stiffness_{kind}", self.n, at(ptr), at(col), at(val), 0, STORAGE[storage], _raw.FETI_COPY if copy else _raw.FETI_BORROW)
@@ -114,7 +114,7 @@ class Body(Part):
         """Gives K by its elements: dofs (elements, k) and matrices (elements, k, k), or lists of arrays of several sizes. dofs below 0 are held.
 
         Option `pieces` and coordinates come before. The matrices are symmetric; only the triangle `storage` is read."""
-        dofs = [integers(d, "dofs", (None,), np.int64) for d in dofs]
+        dofs, matrices = [integers(d, "dofs", (None,), np.int64) for d in listed(dofs, "dofs")], listed(matrices, "matrices")
         ptr = np.concatenate([[0], np.cumsum([d.size for d in dofs], dtype=np.int64)])
         dof = np.concatenate(dofs) if dofs else np.empty(0, dtype=np.int64)
         if len(matrices) != len(dofs):

@@ -8,6 +8,7 @@ import logging
 import operator
 import os
 import tempfile
+import threading
 import warnings
 from ctypes import byref, c_double, c_int32, c_int64, c_void_p
 from typing import Any, Dict, Optional, Tuple, Union
@@ -15,7 +16,7 @@ from typing import Any, Dict, Optional, Tuple, Union
 import numpy as np
 
 from . import _raw
-from ._arrays import at, constraint_rows, counted, filled, integers, numbers, reported, rows_of, together
+from ._arrays import at, constraint_rows, counted, filled, integers, listed, numbers, reported, rows_of, together
 from ._library import LIBRARY, FetiError, FetiWarning, call, interruptible
 from ._records import Certificate, Findings, Info, Progress
 from .parts import KINDS, METHODS, SHAPES, Body, Pair, Surface, one_of, optional
@@ -59,8 +60,8 @@ class Problem:
     `with` or close() frees its memory at once, otherwise the garbage collection does; every call on a closed problem is a FetiError."""
 
     def __init__(self, **options):
-        self._handle, self._kept, self._width, self._calls, self._level = c_void_p(), {}, None, _Calls(), 0
-        self._bodies: list = []
+        self._handle, self._kept, self._width, self._calls = c_void_p(), {}, None, _Calls()
+        self._bodies, self._alone = [], threading.Lock()
         call("problem_create", byref(self._handle))
         self.set(**options)
 
@@ -132,21 +133,23 @@ class Problem:
     def _size(self, kind):
         return self._counts()[1 + KINDS[kind]] if one_of(KINDS, kind, "kind") in (1, 2) else int(np.prod(self._nodes()))
 
-    def _run(self, name, *arguments):
+    def _run(self, name, *arguments, watch=None):
         """A call that may take long: Ctrl-C cancels it, exceptions of functions of the host come out of it."""
+        if not self._alone.acquire(blocking=False):  # another thread, or a function of the host, which must not take the first one's exception
+            raise FetiError(_raw.FETI_BUSY)
         level = 3 if LOG.isEnabledFor(5) else 2 if LOG.isEnabledFor(logging.DEBUG) else int(LOG.isEnabledFor(logging.INFO))
-        if level != self._level:
-            call("on_log", self._handle, self._calls.on_log if level else _raw.feti_log_fn(), level, None)
-            self._level = level
+        calls, self._calls.error, self._calls.watch = self._calls, None, watch
         try:
+            call("on_log", self._handle, calls.on_log if level else _raw.feti_log_fn(), level, None)
+            call("on_progress", self._handle, calls.on_progress if watch else _raw.feti_progress_fn(), None)
             return interruptible(lambda: call(name, self._handle, *arguments), lambda: LIBRARY.feti_cancel(self._handle))
         except FetiError as failed:
-            error, self._calls.error = self._calls.error, None
-            if error is not None:
-                raise error from failed
+            if calls.error is not None:
+                raise calls.error from failed
             raise
         finally:
-            self._calls.error = None
+            calls.error = calls.watch = None
+            self._alone.release()
 
     # ---- options
     def set(self, **options) -> None:
@@ -176,7 +179,8 @@ class Problem:
         """A body of K (n, n), force per length: scipy.sparse or dense; without K, of n unknowns, for the calls of Body.
 
         load (n), force; null_space (n, r), or None: K is not singular, without it the library finds the motions; coordinates (nodes, dim),
-        length, of nodes with an unknown for each direction; storage, copy: see Body.stiffness."""
+        length, of nodes with an unknown for each direction; storage, copy: see Body.stiffness. If K or another argument is refused, the body
+        stays without it: `p.bodies[-1]` takes another one."""
         if K is not None and not hasattr(K, "tocsr"):
             K = numbers(K, "K", (None, None))
         n = K.shape[0] if n is None and K is not None else n
@@ -289,7 +293,7 @@ class Problem:
         list of such arrays; k = 2, 3 in the plane, 3, 6, 4, 8, 9 in space; the outside is where `outward` turns them."""
         x = numbers(x, "x", (None, None))
         dof = None if dof is None else integers(dof, "dof", x.shape, np.int64)
-        faces = [integers(f, "faces", (None, None), np.int64) for f in ([faces] if isinstance(faces, np.ndarray) else faces)]
+        faces = [integers(f, "faces", (None, None), np.int64) for f in ([faces] if isinstance(faces, np.ndarray) else listed(faces, "faces"))]
         shapes = [one_of(SHAPES, (x.shape[1], f.shape[1]), "dimensions and nodes of a face") for f in faces]
         of, dim = _raw.FETI_ALL if body is None else int(body), x.shape[1]
         number = counted("surface_add_i64", self._handle, of, dim, len(x), at(x), dim, at(dof), dim, 0)
@@ -344,12 +348,7 @@ class Problem:
         self.set(**options)
         info = Info()
         with contextlib.ExitStack() as stack:
-            watch = stack.enter_context(_bar()) if progress is True else progress or None
-            if watch is not None:
-                self._calls.watch = watch
-                call("on_progress", self._handle, self._calls.on_progress, None)
-                stack.callback(LIBRARY.feti_on_progress, self._handle, _raw.feti_progress_fn(), None)
-            self._run("solve", byref(info))
+            self._run("solve", byref(info), watch=stack.enter_context(_bar()) if progress is True else progress or None)
         if info.status:
             warnings.warn(f"{info.name}: {LIBRARY.feti_status_text(info.status).decode()}", FetiWarning, stacklevel=2)
         return info

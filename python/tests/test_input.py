@@ -82,6 +82,20 @@ def test_wrong_numbers_raise_with_the_text_of_the_library(wrong, says):
     assert caught.value.status < 0 and caught.value.name.startswith("FETI_") and caught.value.function.startswith("feti_")
 
 
+def test_indices_outside_do_not_end_the_process_in_scipy():
+    for form, index in (("csc", "indices"), ("csc", "indptr"), ("coo", "coords"), ("bsr", "indices")):
+        B = sp.csr_matrix(np.ones((2, 3))).asformat(form)
+        spoiled = getattr(B, index)[0].copy() if index == "coords" else getattr(B, index).copy()
+        spoiled[-1] = 10**6
+        setattr(B, index, (spoiled, B.col) if index == "coords" else spoiled)
+        p = fc.Problem()
+        p.add_body(np.eye(3))
+        with pytest.raises(ValueError):
+            p.add_contact(B)
+    with pytest.raises(TypeError, match="dofs: a sparse matrix"):
+        fc.Problem().add_body(n=2).elements(chain(2), [np.eye(2)])
+
+
 def test_lists_integers_and_strided_arrays_are_converted():
     wide = np.zeros((6, 4))
     wide[::2, ::2] = [[1, -1], [-1, 1], [0, 0]]
@@ -126,6 +140,24 @@ def test_a_second_thread_gets_FETI_BUSY_and_the_first_its_answer(spring):
 
     assert p.solve(progress=progress)
     assert seen == ["FETI_BUSY"] * 3 and p.displacement().shape == (3,)
+
+
+def test_an_exception_of_the_host_is_not_taken_by_a_second_thread(spring):
+    p, *_ = spring
+    solved = []
+
+    def fail(now):
+        solved.append(now)
+        thread = threading.Thread(target=lambda: pytest.raises(fc.FetiError, p.solve, progress=print))
+        raise_first = KeyError("first")
+        p._calls.error = raise_first  # as if another function had failed already
+        thread.start()
+        thread.join()
+        return True
+
+    with pytest.raises(KeyError, match="first"):
+        p._run("solve", None, watch=lambda now: (fail(now), 1 / 0))
+    assert solved and p.solve()
 
 
 def test_threads_solve_their_own_problems_at_once():
