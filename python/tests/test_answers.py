@@ -29,6 +29,12 @@ def test_an_example_prints_the_known_answer_in_few_lines(name, lines, says):
     assert says in subprocess.check_output([sys.executable, path], text=True)
 
 
+def test_the_manual_shows_the_first_example():
+    manual = (EXAMPLES.parent.parent / "docs" / "python.md").read_text()
+    code = (EXAMPLES / "spring.py").read_text().split('"""\n')[1]
+    assert "```python\n" + code in manual
+
+
 @pytest.mark.parametrize("form", ["csr", "csc", "coo", "bsr", "lil", "dense", "fortran"])
 @pytest.mark.parametrize("storage", ["full", "lower", "upper"])
 def test_every_form_and_triangle_of_K_gives_the_answer(form, storage):

@@ -362,3 +362,21 @@ fn a_typed_procedure_counts_from_one_and_takes_sizes_from_arrays() {
         "feti_rows_rhs(handle_of(p), kind, int(first - 1, c_int64_t), size(rhs, kind=c_int64_t), rhs)";
     assert!(call.contains(expected), "{text}");
 }
+
+#[test]
+fn the_python_module_has_texts_pointers_and_numbers_as_ctypes_passes_them() {
+    let (c, mut text) = (with_argument("*const c_char", "in", "text", "a name"), String::new());
+    for (path, generated) in generate(&[("ffi.rs".to_string(), c)], VERSION).unwrap() {
+        if path.ends_with(".py") {
+            text = generated;
+        }
+    }
+    for line in [
+        "    \"feti_do\": (c_int32, [c_char_p]),",
+        "class feti_info(Structure):",
+        "        (\"type\", c_int32),",
+        "        (\"function\", c_char * 40),",
+    ] {
+        assert!(text.lines().any(|found| found == line), "no `{line}` in\n{text}");
+    }
+}
