@@ -223,7 +223,7 @@ $(PYTHON)/installed: python/tests/requirements.txt
 
 python: $(PYTHON)/installed
 	CARGO=$(CARGO) $(PYTHON)/bin/pip install --quiet --no-build-isolation --no-deps --force-reinstall ./python
-	$(PYTHON)/bin/python -B -m pytest -q -p no:cacheprovider python/tests
+	HYPOTHESIS_STORAGE_DIRECTORY=$(PYTHON)/hypothesis $(PYTHON)/bin/python -B -m pytest -q -p no:cacheprovider python/tests
 
 # One driver of tests/abi, after a first `make test`, which installs what CMake looks for.
 driver: stage data
