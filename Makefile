@@ -99,7 +99,7 @@ build/tools/bin/cargo-cinstall:
 	rm -rf build/tools/target
 
 build/tools/conda/installed: packaging/conda/requirements.txt
-	@tools/setup.sh
+	@tools/setup.sh patchelf
 	python3 -m venv --clear $(@D)
 	$(@D)/bin/pip install --quiet --requirement $<
 	touch $@

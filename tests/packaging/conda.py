@@ -18,12 +18,17 @@ for platform in ("noarch", "linux-64"):
     (folder / "repodata.json").write_text(json.dumps(info))
 os.environ |= {"CARGO_PROFILE_RELEASE_OPT_LEVEL": "0", "CARGO_PROFILE_RELEASE_DEBUG": "0"}
 recipe = Stage0Recipe.from_file(root / "packaging/conda/recipe.yaml")
-results = recipe.run_build(
-    VariantConfig.from_yaml("system_tools: [true]\n"),
-    ToolConfiguration(test_strategy="native"),
-    output_dir=work / "output",
-    channels=[(work / "channel").as_uri()],
-    env_isolation=EnvironmentIsolation.NONE,
-)
+try:
+    results = recipe.run_build(
+        VariantConfig.from_yaml("system_tools: [true]\n"),
+        ToolConfiguration(test_strategy="native"),
+        output_dir=work / "output",
+        channels=[(work / "channel").as_uri()],
+        env_isolation=EnvironmentIsolation.NONE,
+    )
+except Exception:
+    for log in work.glob("output/bld/*/work/conda_build.log"):
+        print(log.read_text())
+    raise
 for result in results:
     print(*result.packages)
