@@ -138,6 +138,11 @@ impl<'a> Face<'a> {
         self.factor.is_truncated()
     }
 
+    /// Rows of F that depend on others as far as A shows, and their stiffness.
+    pub fn left_out(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.factor.left_out().map(|(k, stiffness)| (self.rows[k], stiffness))
+    }
+
     /// Dimension of the part of alpha that the face does not determine.
     pub fn undetermined(&self) -> usize {
         self.undetermined

@@ -16,12 +16,10 @@ use crate::solve::pivots::Pivots;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 
 use crate::solve::sparse_face::SparseFaces;
-use crate::solve::split_point::{FaceSolver, SplitPoint};
+use crate::solve::split_point::{FaceSolver, SplitPoint, CORRECTIONS};
 
 /// Limit of Newton steps with friction.
 const STEPS: usize = 16;
-/// Limit of corrections on one active set.
-const CORRECTIONS: usize = 10;
 
 /// Whether option `finish` asks for the finish of an island's answer. `automatic`: if an error that passes the
 /// certificate may be large on some body, or if the way that bodies have travelled has `spoilt` the answer for the place where they
@@ -194,6 +192,13 @@ impl<'a, 'b> Finish<'a, 'b> {
         if feedback.face.is_truncated() && Rung::AllRows.is_tried() {
             feedback = Feedback::on(feedback.face.in_full()?, point.alpha.len(), &self.negative)?;
             self.correct(point, FaceSolver::Dense(&feedback))?;
+        }
+        if !self.passed {
+            self.keep(point, feedback.face.undetermined(), is_better)?;
+            if !self.passes() {
+                let correct = |point: &mut SplitPoint| self.correct(point, FaceSolver::Dense(&feedback));
+                point.close(self.recovery, &feedback.face, correct)?;
+            }
         }
         Ok(Some(feedback.face.undetermined()))
     }

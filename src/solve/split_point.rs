@@ -4,18 +4,20 @@ use crate::body::{Distributed, Kept, Seen};
 use crate::certificate::NOISE;
 use crate::error::Result;
 use crate::linalg::twofold::TwofoldVector;
-use crate::linalg::vector::{axpy, weighted_norm};
+use crate::linalg::vector::{axpy, norm_max, weighted_norm};
 use crate::numbers::solve::FAR;
 use crate::qp::friction::{Corrected, State};
 use crate::qp::Face;
 use crate::solve::feedback::{Feedback, NegativeMotions};
-use crate::solve::gaps::Gaps;
 use crate::solve::local::{
     Added, Begin, Correct, Deformation, Displacement, Point, PointAtRows, Residual, Rigid, Shift,
 };
 use crate::solve::recovery::{Ending, Recovery};
 
 use crate::solve::sparse_face::{Inside, SparseFace};
+
+/// Limit of corrections on one active set, and of steps that close rows left out there.
+pub const CORRECTIONS: usize = 10;
 
 /// The factors of a face: dense ones of F and the modes, or sparse ones of the island.
 #[derive(Clone, Copy)]
@@ -256,18 +258,64 @@ impl SplitPoint {
         Ok(Some((length, step.states)))
     }
 
+    /// The gaps of the rows, and the sizes of their terms, also of those that corrections have cancelled.
+    fn gaps(&self, recovery: &Recovery) -> Result<(Vec<f64>, Vec<f64>)> {
+        let (rows, value) = (&recovery.ready.rows.scaled, &recovery.scaled.gaps.value);
+        let u = self.displacement(recovery)?.at_rows;
+        let term = |(j, v): (usize, f64)| v.abs() * u[j].abs().max(self.corrected[j]);
+        let terms = (0..rows.rows()).map(|i| value[i].abs() + rows.row(i).map(term).sum::<f64>());
+        Ok((self.gaps_left(recovery)?, terms.collect()))
+    }
+
     /// The active set by the signs of forces and gaps.
     pub fn active(&self, recovery: &Recovery) -> Result<Vec<bool>> {
-        let (left, rows) = (self.gaps_left(recovery)?, &recovery.ready.rows.scaled);
-        let (u, x) = (self.displacement(recovery)?.at_rows, self.x.values());
-        let Gaps { value, bounded, .. } = &recovery.scaled.gaps;
-        let terms =
-            |i: usize| rows.row(i).map(|(j, v)| v.abs() * u[j].abs().max(self.corrected[j])).sum::<f64>();
-        let noise = |i: usize, of: f64| of * (value[i].abs() + terms(i));
+        let ((left, terms), x) = (self.gaps(recovery)?, self.x.values());
         // a gap that corrections cannot close depends on other rows, which also carry its force
-        let leaves = |i: usize| x[i] < 0.0 || left[i] > noise(i, NOISE);
+        let leaves = |i: usize| x[i] < 0.0 || left[i] > NOISE * terms[i];
         // in two doubles a gap is known to the rounding of its row
-        let stays = |i: usize| if x[i] == 0.0 { left[i] >= -noise(i, f64::EPSILON) } else { leaves(i) };
+        let stays = |i: usize| if x[i] == 0.0 { left[i] >= -f64::EPSILON * terms[i] } else { leaves(i) };
+        let bounded = &recovery.scaled.gaps.bounded;
         Ok((0..x.len()).map(|i| bounded[i] && stays(i)).collect())
+    }
+
+    /// Closes rows that the factors of a face have left out. Rows that depend on each other to t have pivots of t^2, which A shows only down
+    /// to rounding; in two doubles `correct` shows how forces on them open their gaps: conjugate gradients over these forces.
+    pub fn close(
+        &mut self,
+        recovery: &Recovery,
+        face: &Face,
+        correct: impl Fn(&mut Self) -> Result<()>,
+    ) -> Result<()> {
+        let (left, terms) = self.gaps(recovery)?;
+        let is_open = |(i, _): &(usize, f64)| left[*i].abs() > f64::EPSILON * terms[*i];
+        let rows: Vec<(usize, f64)> = face.left_out().filter(is_open).collect();
+        let (mut along, mut before) = (vec![0.0; rows.len()], f64::INFINITY);
+        for _ in 0..rows.len().min(CORRECTIONS) {
+            let left = self.gaps_left(recovery)?;
+            let work = rows.iter().map(|(i, stiffness)| left[*i] * left[*i] / stiffness).sum::<f64>();
+            for (along, (i, stiffness)) in along.iter_mut().zip(&rows) {
+                *along = work / before * *along - left[*i] / stiffness;
+            }
+            let press = |point: &mut Self, share: f64| {
+                rows.iter().zip(&along).for_each(|((i, _), along)| point.x.add(*i, share * along));
+                correct(point)
+            };
+            let (mut pressed, share) = (self.clone(), norm_max(&self.x.values()) / norm_max(&along));
+            press(&mut pressed, share)?;
+            let opened: Vec<f64> = pressed
+                .gaps_left(recovery)?
+                .iter()
+                .zip(&left)
+                .map(|(to, from)| (to - from) / share)
+                .collect();
+            let dot = |of: &[f64]| rows.iter().zip(&along).map(|((i, _), along)| along * of[*i]).sum::<f64>();
+            let alone = rows.iter().zip(&along).map(|((_, stiffness), along)| stiffness * along * along);
+            if !(dot(&opened) > NOISE * NOISE * alone.sum::<f64>()) {
+                break;
+            }
+            press(self, -dot(&left) / dot(&opened))?;
+            before = work;
+        }
+        Ok(())
     }
 }

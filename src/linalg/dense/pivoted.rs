@@ -72,6 +72,11 @@ impl PivotedCholesky {
         self.rank < self.full_rank
     }
 
+    /// The rows that are left out, and their diagonal entries.
+    pub fn left_out(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.order[self.rank..].iter().map(|&i| (i, self.inverse_root[i].powi(-2)))
+    }
+
     /// The factor including these pivots.
     pub fn in_full(self) -> Self {
         Self { rank: self.full_rank, ..self }
