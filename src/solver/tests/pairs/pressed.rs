@@ -225,7 +225,7 @@ fn points_of_a_mesh_are_a_cloud() {
         pair(&mut problem, cloud, tool, 0.1);
         problem.pairs_find().unwrap();
         problem.solve().unwrap();
-        problem.multipliers(RowKind::Inequality).unwrap()
+        problem.multipliers(RowKind::Inequality).unwrap().to_vec()
     };
     assert_eq!(forces(true), forces(false));
 }
