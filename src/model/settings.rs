@@ -328,7 +328,8 @@ mod tests {
                 OptionValue::F64(value) if value == NO_LIMIT => default == "none",
                 OptionValue::F64(value) => default.parse() == Ok(value),
                 OptionValue::I64(value) => default.parse() == Ok(value),
-                OptionValue::Str(word) => default == word.to_str().unwrap(),
+                OptionValue::Text(text) if text.is_empty() => default == "none",
+                OptionValue::Str(text) | OptionValue::Text(text) => default == text.to_str().unwrap(),
             };
             assert!(right, "docs/options.md has another default of {name}: {default}");
         }
