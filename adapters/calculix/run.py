@@ -7,8 +7,8 @@ BUILD: a folder for sources, program and results; STAGE: where feti-contact is i
 run. Sources and decks come from Debian, as this system's apt knows it; nothing of the system changes. Ends with status 1 if a deck does not end.
 
 Four runs of each deck, one thread: CalculiX's own contact; the same with springs 1e4 times as stiff and hardly any adhesion, which is nearer to contact
-that does not yield; feti-contact; feti-contact with `compliance`, so that LINEAR surfaces yield as CalculiX's. feti-contact solves EDGES by
-node-to-face. Displacements are compared at the end of the last static step, relative to the largest.
+that does not yield; feti-contact; feti-contact with `compliance`, so that LINEAR surfaces yield as CalculiX's. Displacements are
+compared at the end of the last static step, relative to the largest.
 """
 import os
 import re
@@ -22,7 +22,6 @@ FREE = """beamcontact bolt contact1 contact10 contact11 contact2 contact3 contac
     hueeber4 plate punch1 punch2 ring1 ring2 scheibe2f2f scheibe2n2f thread ringfcontact2""".split()
 FRICTION = """changefric changesurfbeh fricloop friction1 friction2 metalforming metalformingmortar ringfcontact1 ringfcontact3
     ringfcontact4""".split()
-EDGES = "beamcontact punch1 punch2".split()  # an edge is pressed into a face: node-to-face (docs/surfaces.md)
 HERE = Path(__file__).resolve().parent
 FLAGS = "-O2 -I/usr/include/spooles -DARCH=Linux -DSPOOLES -DARPACK -DMATRIXSTORAGE -DUSE_MT=1"
 BEGIN, END = "<!-- decks -->\n", "<!-- end of decks -->\n"
@@ -120,8 +119,6 @@ class Run:
         where = build / "runs" / name / (wish or ("stiffer" if wish is None else "own"))
         shutil.rmtree(where, ignore_errors=True)
         where.mkdir(parents=True)
-        if wish and name in EDGES:
-            text = text.replace("TYPE=SURFACE TO SURFACE", "TYPE=NODE TO SURFACE")
         (where / f"{name}.inp").write_text(deck(text, wish is None))
         own = dict(os.environ, OMP_NUM_THREADS="1")
         own.pop("CCX_CONTACT", None)
