@@ -17,7 +17,7 @@ TURNED = {"full": "full", "lower": "upper", "upper": "lower"}
 MOTIONS = {"exact": _raw.FETI_EXACT, "candidates": _raw.FETI_CANDIDATES, "soft": _raw.FETI_SOFT}
 KINDS = {"all": 0, "contact": _raw.FETI_INEQUALITY, "equality": _raw.FETI_EQUALITY, "tangential": _raw.FETI_TANGENTIAL}
 METHODS = {"node_to_face": _raw.FETI_NODE_TO_FACE, "mortar": _raw.FETI_MORTAR}
-SHAPES = {(2, 2): 1, (2, 3): 2, (3, 3): 3, (3, 6): 4, (3, 4): 5, (3, 8): 6, (3, 9): 7}  # (dim, nodes of a face): shape of the library
+SHAPES = {(2, 1): 8, (3, 1): 8, (2, 2): 1, (2, 3): 2, (3, 3): 3, (3, 6): 4, (3, 4): 5, (3, 8): 6, (3, 9): 7}  # (dim, nodes of a face): shape of the library
 FIELDS = ("force", "pressure", "shear", "gap", "slip", "area", "normal", "closed")
 
 

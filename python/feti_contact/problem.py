@@ -290,7 +290,7 @@ class Problem:
         """A surface over nodes at x (nodes, dim), length, with the unknowns dof (nodes, dim) of the body, below 0: held.
 
         Without body: unknowns of all bodies, by number or of the table. Without dof: a tool. faces: an array (m, k) of nodes from 0, or a
-        list of such arrays; k = 2, 3 in the plane, 3, 6, 4, 8, 9 in space; the outside is where `outward` turns them."""
+        list of such arrays; k = 2, 3 in the plane, 3, 6, 4, 8, 9 in space; the outside is where `outward` turns them. k = 1: points without faces."""
         x = numbers(x, "x", (None, None))
         dof = None if dof is None else integers(dof, "dof", x.shape, np.int64)
         faces = [integers(f, "faces", (None, None), np.int64) for f in ([faces] if isinstance(faces, np.ndarray) else listed(faces, "faces"))]

@@ -249,3 +249,15 @@ def test_every_constant_function_and_struct_of_the_header_is_reached():
     assert all(getattr(LIBRARY, name) for name in _raw.FUNCTIONS)
     for name in ("info", "certificate", "findings", "body_facts", "pair_facts", "option", "phase", "progress", "error_detail"):
         assert hasattr(_raw, "feti_" + name)
+
+
+def test_points_of_a_mesh_that_faces_of_one_node_name_meet_a_plane():
+    p = fc.Problem()
+    x = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    body = p.add_body(np.eye(8), null_space=None, load=np.tile([0.0, -1.0], 4))
+    feet = body.surface(x, np.arange(8).reshape(4, 2), np.array([[0], [1]]))
+    pair = p.add_pair(feet, p.add_plane([0, 0], [0, 1]), distance=1, method="node_to_face")
+    p.find_pairs()
+    assert p.solve()
+    np.testing.assert_allclose(pair.info.force, [0, 2, 0], atol=1e-12)
+    np.testing.assert_allclose(body.displacement().reshape(4, 2)[:, 1], [0, 0, -1, -1], atol=1e-12)
