@@ -23,11 +23,9 @@ sed "s/@SHA256@/$(sha256sum <"$out/$name.tar.gz" | cut -d ' ' -f 1)/" packaging/
 rm -rf "${work:?}"
 sh tests/packaging/offline.sh "$root" "$work/offline" "$out/$name.tar.gz"
 
-if [ -f python/pyproject.toml ]; then
-    python3 -m venv "$work/venv"
-    "$work/venv/bin/pip" wheel --quiet --no-deps --wheel-dir "$out" ./python
-    ls "$out"/feti_contact-"$version"-*.whl >/dev/null
-fi
+python3 -m venv "$work/venv"
+"$work/venv/bin/pip" wheel --quiet --no-deps --wheel-dir "$out" ./python
+ls "$out"/feti_contact-"$version"-*.whl >/dev/null
 
 tools/deb.sh "$work/deb"
 mv "$work"/deb/*.deb "$out"
