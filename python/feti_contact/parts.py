@@ -17,8 +17,11 @@ TURNED = {"full": "full", "lower": "upper", "upper": "lower"}
 MOTIONS = {"exact": _raw.FETI_EXACT, "candidates": _raw.FETI_CANDIDATES, "soft": _raw.FETI_SOFT}
 KINDS = {"all": 0, "contact": _raw.FETI_INEQUALITY, "equality": _raw.FETI_EQUALITY, "tangential": _raw.FETI_TANGENTIAL}
 METHODS = {"node_to_face": _raw.FETI_NODE_TO_FACE, "mortar": _raw.FETI_MORTAR}
-SHAPES = {(2, 1): 8, (3, 1): 8, (2, 2): 1, (2, 3): 2, (3, 3): 3, (3, 6): 4, (3, 4): 5, (3, 8): 6, (3, 9): 7}  # (dim, nodes of a face): shape of the library
-FIELDS = ("force", "pressure", "shear", "gap", "slip", "area", "normal", "closed")
+# (dim, nodes of a face): shape of the library
+SHAPES = {(dim, 1): _raw.FETI_POINT for dim in (2, 3)}
+SHAPES.update({(2, 2): _raw.FETI_LINE2, (2, 3): _raw.FETI_LINE3, (3, 3): _raw.FETI_TRI3, (3, 6): _raw.FETI_TRI6})
+SHAPES.update({(3, 4): _raw.FETI_QUAD4, (3, 8): _raw.FETI_QUAD8, (3, 9): _raw.FETI_QUAD9})
+FIELDS = {name: getattr(_raw, f"FETI_{name.upper()}") for name in ("force", "pressure", "shear", "gap", "slip", "area", "normal", "closed")}
 
 
 def one_of(table, key, name):
@@ -267,10 +270,9 @@ class Pair(Part):
 
     def field(self, name: str) -> np.ndarray:
         """force, pressure, gap, area, closed (nodes) or shear, slip, normal (nodes, dim) at the nodes of the slave; 0 without a partner."""
-        if name not in FIELDS:
-            raise ValueError(f"field {name!r}, not one of {', '.join(FIELDS)}")
+        field = one_of(FIELDS, name, "field")
         shape = self.slave.shape if name in ("shear", "slip", "normal") else self.slave.shape[:1]
-        return filled(shape, "pair_field", *self._place, FIELDS.index(name) + 1, int(np.prod(shape)))
+        return filled(shape, "pair_field", *self._place, field, int(np.prod(shape)))
 
     @property
     def info(self) -> PairInfo:

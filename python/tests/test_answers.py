@@ -29,10 +29,10 @@ def test_an_example_prints_the_known_answer_in_few_lines(name, lines, says):
     assert says in subprocess.check_output([sys.executable, path], text=True)
 
 
-def test_the_manual_shows_the_first_example():
-    manual = (EXAMPLES.parent.parent / "docs" / "python.md").read_text()
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_the_documents_show_the_first_example(page):
     code = (EXAMPLES / "spring.py").read_text().split('"""\n')[1]
-    assert "```python\n" + code in manual
+    assert "```python\n" + code in (EXAMPLES.parent.parent / page).read_text()
 
 
 @pytest.mark.parametrize("form", ["csr", "csc", "coo", "bsr", "lil", "dense", "fortran"])
