@@ -13,6 +13,7 @@ mod proofs;
 mod qp;
 mod reference;
 mod reuse;
+mod single;
 mod tables;
 mod texts;
 

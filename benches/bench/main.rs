@@ -69,8 +69,9 @@ fn child(kind: &str, deck: &str, threads: &str) -> Result<(), String> {
     let build = || model().map(Model::build);
     let by_elements = || model()?.by_elements().ok_or_else(|| "no deck by elements".to_string());
     match kind {
-        "ours" => ours::run(build()?, threads.parse().map_err(|_| "no number of threads")?),
-        "frictionless" => ours::run(model()?.frictionless(), 1),
+        "ours" => ours::run(build()?, threads.parse().map_err(|_| "no number of threads")?, 0),
+        "few" => ours::run(build()?, threads.parse().map_err(|_| "no number of threads")?, 1),
+        "frictionless" => ours::run(model()?.frictionless(), 1, 0),
         "cut" => cut::run(by_elements()?, 0, threads.parse().map_err(|_| "no number of threads")?),
         "pieces" => cut::run(by_elements()?, threads.parse().map_err(|_| "no number of pieces")?, 2),
         "later" => cut::later(by_elements),

@@ -105,6 +105,7 @@ impl Peers {
         };
         match program {
             Program::Ours(threads) => own("ours", threads),
+            Program::Few(threads) => own("few", threads),
             Program::Frictionless => own("frictionless", 1),
             Program::Cut(threads) => own("cut", threads),
             Program::Pieces(pieces) => own("pieces", pieces),

@@ -99,12 +99,14 @@ impl Case {
     /// What is run, in the order in which the programs take turns.
     pub fn programs(&self) -> Vec<Program> {
         use Program::{
-            Cholmod, Clarabel, Cut, Factor, Faer, Frictionless, HostLoop, Later, Osqp, Ours, Parts, Pieces,
+            Cholmod, Clarabel, Cut, Factor, Faer, Few, Frictionless, HostLoop, Later, Osqp, Ours, Parts,
+            Pieces,
         };
         match self.model {
             Model::Blocks(_) if self.name == PEERS => vec![Ours(1), HostLoop(6), HostLoop(9), Clarabel, Osqp],
+            Model::Blocks(18 | 28) => vec![Ours(1), Cholmod(1), Few(1), Ours(2), Cholmod(2), Parts],
             Model::Blocks(_) => vec![Ours(1), Cholmod(1), Ours(2), Cholmod(2), Parts],
-            Model::Rubbing(_) => vec![Ours(1), Frictionless, Ours(2)],
+            Model::Rubbing(_) => vec![Ours(1), Few(1), Frictionless, Ours(2)],
             Model::OneBody(_) => vec![Ours(1), Ours(2)],
             Model::Varied(28) => vec![Cut(1), Cholmod(1), Cut(2), Ours(1), Later],
             Model::Varied(36) => vec![Cut(2), Cholmod(2), Ours(2), Cut(1), Pieces(216), Pieces(729)],

@@ -7,6 +7,8 @@ use std::process::Command;
 pub enum Program {
     /// The contact solve on so many threads.
     Ours(usize),
+    /// The same with option steps=1: factors in single precision where they suffice.
+    Few(usize),
     /// That of the same deck without friction, on one thread.
     Frictionless,
     /// The same of bodies that are handed over by their elements, and cut as the library chooses.
@@ -37,6 +39,7 @@ impl Program {
     pub fn name(self) -> String {
         match self {
             Program::Ours(threads) => format!("ours_{threads}"),
+            Program::Few(threads) => format!("few_{threads}"),
             Program::Frictionless => "frictionless".into(),
             Program::Cut(threads) => format!("cut_{threads}"),
             Program::Pieces(pieces) => format!("pieces_{pieces}"),
@@ -72,6 +75,7 @@ impl Program {
     pub fn threads(self) -> usize {
         match self {
             Program::Ours(threads) | Program::Cut(threads) | Program::Cholmod(threads) => threads,
+            Program::Few(threads) => threads,
             Program::Pieces(_) => 2,
             Program::Factor(threads) | Program::Faer(threads) | Program::Surfaces(threads) => threads,
             _ => 1,

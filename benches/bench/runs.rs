@@ -47,6 +47,9 @@ impl Runs {
         for name in ["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"] {
             command.env(name, &threads);
         }
+        if let Some(core) = kernels() {
+            command.env("OPENBLAS_CORETYPE", core);
+        }
         let text = output(&mut command).map_err(|why| format!("{deck} {}: {why}", program.name()))?;
         let mut rest = String::new();
         for line in text.lines() {
@@ -78,6 +81,20 @@ impl Runs {
         let (over, under) = (self.values(deck, over.0, over.1), self.values(deck, under.0, under.1));
         median(over.iter().zip(&under).map(|(a, b)| a / b).collect())
     }
+}
+
+/// The kernels of OpenBLAS for this processor: older versions do not know newer ones, and take those of 2004 for them.
+fn kernels() -> Option<&'static str> {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
+            return Some("SKYLAKEX");
+        }
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            return Some("HASWELL");
+        }
+    }
+    None
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

@@ -18,6 +18,7 @@ use crate::body::spectrum::Doubt;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::inverse_form;
 use crate::linalg::{Csr, Matrix, Multiple, Packed};
+use crate::platform::memory::zeros;
 use crate::platform::slabs::Slabs;
 
 #[derive(Clone)]
@@ -98,12 +99,19 @@ impl GeneralizedInverse {
 
     /// `x <- K+ x`
     pub fn apply_in_place(&self, x: &mut [f64]) -> Result<()> {
+        self.apply_to_share(1.0, x)
+    }
+
+    /// As `apply_in_place`, for a `share` of a whole load, relative to which rounding counts.
+    fn apply_to_share(&self, share: f64, x: &mut [f64]) -> Result<()> {
         match (&self.carried, &self.near, &self.factor) {
             (Some(carried), Some(near), Factor::Rounded(rounded)) => {
                 // the carried motions, which K may hardly resist, are not added and then subtracted
                 let motions = carried.motions_under(x)?;
-                rounded.solve_without(&motions, x, |x| near.apply_in_place(x, |x| rounded.approximate(x)))
+                let near = |x: &mut [f64]| near.apply_in_place(x, |x| rounded.approximate(x));
+                rounded.solve_without(&motions, share, x, near)
             }
+            (None, _, Factor::Rounded(rounded)) => rounded.solve(share, x),
             (Some(carried), ..) => carried.apply_in_place(x, |x| self.factor.solve(x)),
             (None, ..) => self.factor.solve(x),
         }
@@ -118,12 +126,11 @@ impl GeneralizedInverse {
         }
     }
 
-    /// `x <- K+ x`; not `exact`: by `approximate_in_place`.
-    pub fn solve_in_place(&self, exact: bool, x: &mut [f64]) -> Result<()> {
-        if exact {
-            self.apply_in_place(x)
-        } else {
-            self.approximate_in_place(x)
+    /// `x <- K+ x` for a share of a whole load, relative to which rounding counts; without it, by `approximate_in_place`.
+    pub fn solve_in_place(&self, share: Option<f64>, x: &mut [f64]) -> Result<()> {
+        match share {
+            Some(share) => self.apply_to_share(share, x),
+            None => self.approximate_in_place(x),
         }
     }
 
@@ -249,17 +256,28 @@ impl GeneralizedInverse {
         }
     }
 
-    /// `B K+ B'` for the rows B (m x n) of this body.
+    /// `B K+ B' x` for the rows B (m x n) of this body, by `solve_in_place`.
+    pub fn product_between(&self, rows: &Csr, x: &[f64], share: Option<f64>) -> Result<Vec<f64>> {
+        let what = "a product with the dual operator";
+        let (mut moved, mut image) = (zeros(rows.cols, what)?, zeros(rows.rows(), what)?);
+        rows.mul_transposed_add(1.0, x, &mut moved);
+        self.solve_in_place(share, &mut moved)?;
+        rows.mul(&moved, &mut image);
+        Ok(image)
+    }
+
+    /// `B K+ B'` for the rows B (m x n) of this body; `B K~+ B'` if the factor is rounded.
     pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
         let mut form = match &self.factor {
             Factor::Own(factor) => inverse_form(factor, rows)?,
-            Factor::Rounded(rounded) => rounded.inverse_form(rows)?,
+            Factor::Rounded(rounded) => inverse_form(&rounded.factor, rows)?,
             Factor::Host(host) => host.inverse_form(rows)?,
             Factor::Elsewhere(_) => {
                 return Err(Error::new(Kind::Internal, "K+ of a body is looked for on the wrong rank"));
             }
         };
-        self.carried.iter().try_for_each(|carried| carried.take_from_form(rows, &mut form))?;
+        let carried = self.near.as_ref().or(self.carried.as_ref());
+        carried.iter().try_for_each(|carried| carried.take_from_form(rows, &mut form))?;
         Ok(form)
     }
 

@@ -9,10 +9,12 @@ use crate::body::misfit::Misfit;
 use crate::body::null_space::NullSpaceInput;
 use crate::body::pilots::Pilots;
 use crate::body::probe::{probe, Factor};
+use crate::body::rounded::Rounded;
 use crate::body::spectrum::Doubt;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::NOISE;
 use crate::linalg::{Analysis, Cholesky, Matrix, Multiple};
+use crate::numbers::body::{CONTRAST, SOLID, WORTH_SINGLE};
 use crate::numbers::linalg::DEPENDENT;
 
 /// The plan if the null space is known before the factorisation.
@@ -32,6 +34,8 @@ pub struct Known {
     pub(super) symbolic: Option<Arc<Symbolic>>,
     /// The resistance to the null space that may be rounding of the entries.
     pub(super) doubt: Option<Doubt>,
+    /// A factor in single precision is tried first.
+    pub(super) single: bool,
     /// Coordinates or candidates: how many of them fit.
     pub(super) misfit: Option<Misfit>,
     /// What follows if a null vector may be missing.
@@ -49,9 +53,23 @@ pub(super) enum Retry {
 impl Known {
     /// `given`: the host gave the fixing dofs.
     pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
-        let (soft, pilots, rigid, symbolic) = (false, None, None, None);
+        let (soft, single, pilots, rigid, symbolic) = (false, false, None, None, None);
         let (doubt, misfit, retry) = (None, None, None);
-        Self { k, null_space, error, fixing, given, soft, pilots, rigid, symbolic, doubt, misfit, retry }
+        Self {
+            k,
+            null_space,
+            error,
+            fixing,
+            given,
+            soft,
+            single,
+            pilots,
+            rigid,
+            symbolic,
+            doubt,
+            misfit,
+            retry,
+        }
     }
 
     /// The null vectors lose their values at these unknowns, and those that move nothing else are left out.
@@ -100,6 +118,14 @@ impl Known {
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or has further null vectors. For
     /// soft motions it holds other dofs, or more, but not more than `most`, if K requires them.
     pub fn execute(mut self, most: usize) -> Result<Factorised> {
+        let mut tried = 0;
+        if let Some(symbolic) = self.symbolic.clone().filter(|symbolic| self.suits_single(&symbolic.analysis))
+        {
+            if let Some(inverse) = self.in_single(&symbolic.analysis)? {
+                return Ok(Factorised { inverse, symbolic, further_analyses: 0, factorisations: 1 });
+            }
+            tried = 1;
+        }
         let (mut symbolic, mut inverse, mut further) = self.held_by(most)?;
         if let Some(better) = self.better(&inverse)? {
             self.hold(inverse.null_space, better)?;
@@ -107,7 +133,30 @@ impl Known {
             (symbolic, inverse, more) = self.held_by(most)?;
             further += 1 + more;
         }
-        Ok(Factorised { inverse, symbolic, further_analyses: further, factorisations: 1 + further })
+        Ok(Factorised { inverse, symbolic, further_analyses: further, factorisations: 1 + further + tried })
+    }
+
+    /// Whether a factor in single precision saves time, and seems to suffice: the body is solid and of similar stiffness everywhere.
+    fn suits_single(&self, analysis: &Analysis) -> bool {
+        let (n, k) = (self.k.order(), &self.k);
+        let is_plain = self.single && !self.soft && self.pilots.is_none() && self.rigid.is_none();
+        if !is_plain
+            || analysis.work() < WORTH_SINGLE
+            || (analysis.highest_front() as f64) < SOLID * (n as f64).powf(2.0 / 3.0)
+        {
+            return false;
+        }
+        let sizes = (0..n).map(|i| k.metric(i, 1.0));
+        let (least, most) =
+            sizes.fold((f64::INFINITY, 0.0_f64), |(least, most), d| (least.min(d), most.max(d)));
+        most <= CONTRAST * least
+    }
+
+    /// K+ by a factor computed in single precision; none if K does not allow it.
+    fn in_single(&self, analysis: &Arc<Analysis>) -> Result<Option<GeneralizedInverse>> {
+        let Ok(factor) = analysis.pivoted(&self.k.matrix, self.k.by, 0.0)? else { return Ok(None) };
+        let made = Rounded::computed(factor, &self.k, &self.fixing)?;
+        made.map(|(rounded, softness)| self.with(Factor::Rounded(Arc::new(rounded)), softness)).transpose()
     }
 
     /// K+, its analysis, and how many times further dofs had to be held. A pivot that is only rounding, as beside a
@@ -135,6 +184,10 @@ impl Known {
     fn made(&self, factor: Cholesky) -> Result<GeneralizedInverse> {
         let factor = Factor::Own(Arc::new(factor));
         let softness = probe(&factor, &self.k, &self.fixing, self.null_space.cols)?;
+        self.with(factor, softness)
+    }
+
+    fn with(&self, factor: Factor, softness: f64) -> Result<GeneralizedInverse> {
         let inverse = GeneralizedInverse {
             null_space: self.null_space.clone(),
             stiffness: Vec::new(),

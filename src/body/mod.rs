@@ -77,6 +77,7 @@ pub use pilots::{Carried, Pilots};
 pub use plan::Plan;
 pub use planning::Planning;
 pub use rigid_modes::Coordinates;
+pub use rounded::Precision;
 pub use skyline::{Direction, Skyline, SkylineInput};
 pub use spectrum::Doubt;
 pub use stiffness::{check_diagonal, check_finite, from_dense, from_sparse, from_split};

@@ -10,6 +10,7 @@ use crate::body::layout::{Layout, Symbolic};
 use crate::body::misfit::Misfit;
 use crate::body::null_space::{Modes, NullSpaceInput, Verified};
 use crate::body::pilots::Pilots;
+use crate::body::rounded::Precision;
 use crate::linalg::vector::NOISE;
 use crate::numbers::body::{PROBE, RESISTED};
 
@@ -17,6 +18,7 @@ use crate::body::search::Search;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{headroom, PRODUCTS};
+use crate::platform::slabs::Slabs;
 use crate::platform::tally;
 
 /// How K+ will be computed.
@@ -216,6 +218,19 @@ impl Plan {
             }
             Self::Known(_) | Self::Search(_) => Ok(other.clone()),
         }
+    }
+
+    /// As `execute`, with a factor of this precision if K allows it; one that is rounded is stored in `slabs`.
+    pub fn execute_in(mut self, precision: Precision, slabs: &Slabs) -> Result<Factorised> {
+        if let (Self::Known(known), Precision::Single) = (&mut self, precision) {
+            known.single = true;
+        }
+        if precision != Precision::Rounded {
+            return self.execute();
+        }
+        let k = self.matrix().clone();
+        let made = self.execute()?;
+        Ok(Factorised { inverse: made.inverse.rounded(&k, slabs)?, ..made })
     }
 
     /// Factorises and probes. If K has more null vectors than the coordinates gave, searches them in K.

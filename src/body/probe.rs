@@ -33,7 +33,7 @@ impl Factor {
     pub fn solve(&self, x: &mut [f64]) -> Result<()> {
         match self {
             Self::Own(factor) => factor.solve(x),
-            Self::Rounded(rounded) => rounded.solve(x),
+            Self::Rounded(rounded) => rounded.solve(1.0, x),
             Self::Host(host) => host.solve_in_place(x),
             Self::Elsewhere(elsewhere) => elsewhere.solve(true, x),
         }

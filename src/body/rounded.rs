@@ -9,12 +9,25 @@
 //! as that of K+ after one to four corrections, each of which reduces the error to a part 2^-24 / softness.
 
 use crate::error::Result;
+use crate::linalg::random::Random;
 use crate::linalg::vector::{axpy, weighted_norm};
-use crate::linalg::{Cholesky, Csr, Multiple, Packed};
-use crate::numbers::body::{REACHED_ROUNDING, SHARE, TINY};
-use crate::platform::interrupt;
+use crate::linalg::{Cholesky, Multiple};
+use crate::numbers::body::{CONVERGED, REACHED_ROUNDING, SHARE, TINY};
 use crate::platform::memory::{copied, zeros};
 use crate::platform::slabs::Slabs;
+use crate::ranks::wire_enum;
+
+/// The precision of a factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    Double,
+    /// Rounded to single precision, if K allows it.
+    Rounded,
+    /// Computed in single precision, if that saves time and K allows it.
+    Single,
+}
+
+wire_enum!(Precision { Double, Rounded, Single });
 
 /// Rounding of L, relative to its entries.
 const SINGLE: f64 = f32::EPSILON as f64 / 2.0;
@@ -44,8 +57,7 @@ impl Rounded {
         if !(softness * SHARE > SINGLE && factor.smallest_pivot() > TINY && factor.at_rest().is_empty()) {
             return Ok(None);
         }
-        let rounding = f64::EPSILON * (1.0 / softness).max(4.0);
-        let rounded = Self { factor: factor.rounded(slabs)?, k: k.clone(), held: held.to_vec(), rounding };
+        let rounded = Self::with(factor.rounded(slabs)?, k, held, softness);
         // a load that strains all dofs equally
         let load: Vec<f64> = (0..k.order()).map(|i| k.metric(i, 1.0).sqrt()).collect();
         let mut x = copied(&load, WHAT)?;
@@ -54,66 +66,83 @@ impl Rounded {
         Ok((left <= SHARE * rounded.size(&load)).then_some(rounded))
     }
 
+    fn with(factor: Cholesky<f32>, k: &Multiple, held: &[usize], softness: f64) -> Self {
+        Self { factor, k: k.clone(), held: held.to_vec(), rounding: Self::rounding(softness) }
+    }
+
+    fn rounding(softness: f64) -> f64 {
+        f64::EPSILON * (1.0 / softness).max(4.0)
+    }
+
+    /// A factor that was computed in single precision, and the softness of a random load. None if K, whose null space may not be
+    /// known completely, is not so regular that corrections lead to rounding: the part of the load along a missing motion would stay.
+    pub fn computed(factor: Cholesky<f32>, k: &Multiple, held: &[usize]) -> Result<Option<(Self, f64)>> {
+        if held.len() == k.order() || factor.smallest_pivot() <= TINY {
+            return Ok(None);
+        }
+        let mut load = Random::default().vector(k.order(), |i| k.metric(i, 1.0).sqrt())?;
+        held.iter().for_each(|&dof| load[dof] = 0.0);
+        let (mut x, mut image, mut terms) =
+            (copied(&load, WHAT)?, zeros(load.len(), WHAT)?, zeros(load.len(), WHAT)?);
+        factor.solve(&mut x)?;
+        k.mul_with_terms(&x, &mut image, &mut terms);
+        let mut rounded = Self::with(factor, k, held, 1.0);
+        let softness = rounded.size(&load) / rounded.size(&terms);
+        // false also for NaN
+        if !(softness * SHARE > SINGLE
+            && rounded.size(&rounded.left(&load, &x)?) <= SHARE * rounded.size(&load))
+        {
+            return Ok(None);
+        }
+        rounded.rounding = Self::rounding(softness);
+        x.copy_from_slice(&load);
+        let left = rounded.refined(1.0, &mut x, |x| rounded.approximate(x))?;
+        Ok((left <= CONVERGED * rounded.rounding).then_some((rounded, softness)))
+    }
+
     /// `x <- K~+ x`
     pub fn approximate(&self, x: &mut [f64]) -> Result<()> {
         self.factor.solve(x)
     }
 
-    /// `x <- K+ x`, refined.
-    pub fn solve(&self, x: &mut [f64]) -> Result<()> {
-        self.refined(x, |x| self.approximate(x))
+    /// `x <- K+ x`, refined; x is the given `share` of a whole load, relative to which its rounding counts.
+    pub fn solve(&self, share: f64, x: &mut [f64]) -> Result<()> {
+        self.refined(share, x, |x| self.approximate(x)).map(drop)
     }
 
     /// Solves `K x = b - K v` for x, b in x on entry, refined by solves close to those with K.
     pub fn solve_without(
         &self,
         motion: &[f64],
+        share: f64,
         x: &mut [f64],
         near: impl Fn(&mut [f64]) -> Result<()>,
     ) -> Result<()> {
         let left = self.left(x, motion)?;
         x.copy_from_slice(&left);
-        self.refined(x, near)
+        self.refined(share, x, near).map(drop)
     }
 
-    /// `x <- x + near(b - K x)`, from 0, while this reduces the residual.
-    fn refined(&self, x: &mut [f64], near: impl Fn(&mut [f64]) -> Result<()>) -> Result<()> {
+    /// `x <- x + near(b - K x)`, from 0, while this reduces the residual. Returns the last residual that was computed, relative to b.
+    fn refined(&self, share: f64, x: &mut [f64], near: impl Fn(&mut [f64]) -> Result<()>) -> Result<f64> {
         let load = copied(x, WHAT)?;
         let size = self.size(&load);
+        let rounding = self.rounding / share * size;
         near(x)?;
-        let mut before = size;
+        let (mut before, mut last) = (size, size);
         for _ in 0..CORRECTIONS {
             let mut left = self.left(&load, x)?;
             let now = self.size(&left);
+            last = now;
             // true also for NaN
-            if !(now > self.rounding * size && now < REACHED_ROUNDING * before) {
+            if !(now > rounding && now < REACHED_ROUNDING * before) {
                 break;
             }
             near(&mut left)?;
             axpy(1.0, &left, x);
             before = now;
         }
-        Ok(())
-    }
-
-    /// `B K+ B'` for the rows B (m x n) of this body: the entries below the diagonal, column by column.
-    pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
-        let m = rows.rows();
-        let mut form = Packed::zeros(m)?;
-        for j in 0..m {
-            let moved = self.moved(rows, j)?;
-            (j..m).for_each(|i| form.add(i, j, rows.row_dot(i, &moved)));
-        }
-        Ok(form)
-    }
-
-    /// `K+ b_j'`
-    fn moved(&self, rows: &Csr, j: usize) -> Result<Vec<f64>> {
-        interrupt::check()?;
-        let mut x = zeros(self.k.order(), WHAT)?;
-        rows.row(j).for_each(|(dof, v)| x[dof] += v);
-        self.solve(&mut x)?;
-        Ok(x)
+        Ok(last / size)
     }
 
     /// `b - K x` at free dofs, 0 at held dofs.
@@ -172,7 +201,7 @@ mod tests {
         let solutions = [
             |f: &Cholesky, _: &Rounded, x: &mut [f64]| f.solve(x),
             |_: &Cholesky, r: &Rounded, x: &mut [f64]| r.approximate(x),
-            |_: &Cholesky, r: &Rounded, x: &mut [f64]| r.solve(x),
+            |_: &Cholesky, r: &Rounded, x: &mut [f64]| r.solve(1.0, x),
         ];
         let [own, near, refined] = solutions.map(|solve| {
             let mut x = load.clone();
@@ -183,18 +212,28 @@ mod tests {
         assert!(apart(&refined, &own) < 1e-12, "{:e}", apart(&refined, &own));
     }
 
+    /// A factor computed in single precision of a chain whose first spring has stiffness `ground`; none if there is none.
+    fn computed(n: usize, ground: f64) -> Option<Rounded> {
+        let k = chain(n, ground);
+        let analysis = Arc::new(Analysis::new(&k.matrix, &vec![false; n]).unwrap());
+        let factor = analysis.pivoted::<f32>(&k.matrix, k.by, 0.0).unwrap().ok()?;
+        Rounded::computed(factor, &k, &[]).unwrap().map(|made| made.0)
+    }
+
     #[test]
-    fn entries_of_dual_operators_are_refined() {
-        let k = chain(40, 1.0);
-        let (factor, slabs) = (factor(&k), Slabs::of(0).unwrap());
-        let rounded = Rounded::of(&factor, &k, &[], 1e-3, &slabs).unwrap().unwrap();
-        let mut rows = Csr::empty(40);
-        rows.push_row([(3, 1.0), (17, -1.0)]);
-        rows.push_row([(39, 2.0)]);
-        let form = rounded.inverse_form(&rows).unwrap();
-        let expected = crate::linalg::cholesky::inverse_form(&factor, &rows).unwrap();
-        for i in 0..2 {
-            assert!((0..2).all(|j| (form.get(i, j) / expected.get(i, j) - 1.0).abs() < 1e-12));
+    fn a_factor_computed_in_single_precision_gives_refined_solutions_and_refuses_what_it_cannot_see() {
+        let (n, k) = (60, chain(60, 0.3));
+        let single = computed(n, 0.3).expect("such a chain allows it");
+        let load = Random::default().vector(n, |_| 1.0).unwrap();
+        let (mut own, mut refined, mut share) = (load.clone(), load.clone(), load.clone());
+        factor(&k).solve(&mut own).unwrap();
+        single.solve(1.0, &mut refined).unwrap();
+        single.solve(1e-6, &mut share).unwrap();
+        assert!(apart(&refined, &own) < 1e-11, "{:e}", apart(&refined, &own));
+        assert!((1e-14..1e-6).contains(&apart(&share, &refined)), "{:e}", apart(&share, &refined));
+        // free, almost free, and driven: the motion that is left would have to be resisted by more than rounding
+        for ground in [0.0, 1e-9, -1e-9, 1e-7, -1e-7, 1e-6] {
+            assert!((20..60).all(|n| computed(n, ground).is_none()), "{ground}");
         }
     }
 

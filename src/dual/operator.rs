@@ -11,19 +11,29 @@ use crate::dual::multiples::Multiples;
 use crate::dual::{Dual, InParallel, Ledger, Subdomain};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Csr, Entries, Matrix, Operator};
-use crate::platform::memory::zeros;
 use crate::platform::tally;
 
-const WHAT: &str = "a product with the dual operator";
 /// Multiplications of a step per row, besides those of its product.
 const VECTORS: usize = 100;
 
 /// Accuracy of products with F.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Accuracy {
     Full,
+    /// x is this share of a whole, relative to whose product rounding counts.
+    Share(f64),
     /// Accuracy of the factors, which may be rounded to single precision.
     OfFactors,
+}
+
+impl Accuracy {
+    fn share(self) -> Option<f64> {
+        match self {
+            Self::Full => Some(1.0),
+            Self::Share(share) => Some(share),
+            Self::OfFactors => None,
+        }
+    }
 }
 
 impl Subdomain {
@@ -32,15 +42,15 @@ impl Subdomain {
         self.spend(Ledger::multiplies)?;
         if let Some(Form::Own(explicit)) = self.form() {
             let local = self.multiples.gather(&self.rows, x);
+            if by != Accuracy::OfFactors && self.kplus.is_rounded() {
+                let rows = Multiples::of(&self.matrix).1;
+                return Ok(self.image_of(self.kplus.product_between(&rows, &local, by.share())?));
+            }
             let mut image = vec![0.0; local.len()];
             explicit.apply(&local, &mut image);
             return Ok(self.image_of(image));
         }
-        let (local, mut moved) = (self.gather(x), zeros(self.matrix.cols, WHAT)?);
-        self.matrix.mul_transposed_add(1.0, &local, &mut moved);
-        self.kplus.solve_in_place(by == Accuracy::Full, &mut moved)?;
-        let mut image = vec![0.0; local.len()];
-        self.matrix.mul(&moved, &mut image);
+        let image = self.kplus.product_between(&self.matrix, &self.gather(x), by.share())?;
         Ok(self.image_of(image))
     }
 
@@ -48,7 +58,7 @@ impl Subdomain {
     fn asking(&self, x: &[f64], by: Accuracy) -> Option<Asking> {
         let Some(Form::Elsewhere(form)) = &self.operator else { return None };
         let local = if form.explicit { self.multiples.gather(&self.rows, x) } else { self.gather(x) };
-        Some(form.multiplying(by == Accuracy::Full, local))
+        Some(form.multiplying(by.share(), local))
     }
 
     /// The product from the answer.
@@ -189,12 +199,16 @@ impl Operator for Dual {
         self.product(x, y, Accuracy::Full, &|count, task| (0..count).map(task).collect())
     }
 
+    fn apply_to_share(&self, share: f64, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.product(x, y, Accuracy::Share(share), &|count, task| (0..count).map(task).collect())
+    }
+
     fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.product(x, y, Accuracy::OfFactors, &|count, task| (0..count).map(task).collect())
     }
 
     fn has_approximation(&self) -> bool {
-        self.subdomains.iter().any(|s| s.explicit().is_none() && s.kplus.is_rounded())
+        self.subdomains.iter().any(|s| s.kplus.is_rounded())
     }
 
     fn bytes_kept(&self) -> usize {

@@ -121,7 +121,7 @@ impl Preconditioner {
             None => Owed::nothing(),
             Some((form, ..)) => {
                 let question = |(k, (form, own, _)): (usize, &(&FormElsewhere, &[f64], &mut [f64]))| {
-                    (k, form.multiplying(true, own.to_vec()))
+                    (k, form.multiplying(Some(1.0), own.to_vec()))
                 };
                 ask(form.ranks(), elsewhere.iter().enumerate().map(question).collect())?
             }

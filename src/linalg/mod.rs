@@ -48,6 +48,10 @@ pub trait Operator: Sync {
         self.apply(x, y);
         Ok(())
     }
+    /// As `try_apply`, where x is this share of a whole, relative to whose product rounding counts.
+    fn apply_to_share(&self, _share: f64, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.try_apply(x, y)
+    }
     /// A cheaper product with an approximation of A, symmetric and definite like A; without an approximation, with A
     /// itself.
     fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {

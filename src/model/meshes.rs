@@ -141,7 +141,7 @@ impl HostModel {
         let mesh = self.mesh(body)?.connectivity();
         let pieces = match usize::try_from(self.settings.pieces) {
             Ok(0) | Err(_) if self.stays_whole => 1,
-            Ok(0) | Err(_) => pieces_for(mesh.unknowns()),
+            Ok(0) | Err(_) => pieces_for(mesh.unknowns(), usize::try_from(self.settings.steps).unwrap_or(0)),
             Ok(wanted) => wanted,
         };
         if pieces <= 1 {

@@ -87,7 +87,9 @@ settings! {
     threads: i64 = I64(0), 0.0..=4096.0,
         c"Number of threads for the setup and for expensive products with the dual operator (at most one thread for 500 unknowns and four for a CPU); 0: as many as the CPUs that this process may use. The answer has the same bits for any number.";
     pieces: i64 = I64(0), 0.0..=1e6,
-        c"Number of pieces into which a body given by its elements is cut when its first element matrix arrives. 0: the library chooses by size, one piece below 40000 unknowns; 1: no body is cut; n: about n pieces for each body.";
+        c"Number of pieces into which a body given by its elements is cut when its first element matrix arrives. 0: the library chooses by size, one piece below 40000 unknowns for each solve that option steps expects; 1: no body is cut; n: about n pieces for each body.";
+    steps: i64 = I64(0), 0.0..=1e6,
+        c"Expected number of solves with the same stiffness matrices, for other loads, gaps or rows; 0: unknown. 1 or 2: large solid bodies whose null space is known are factorised in single precision, with corrections to double: less time and half of the memory for the first solve, more time for each later one. From 3 on bodies given by elements are cut at larger sizes (option pieces).";
     glue: i64 = I64(0), 0.0..=1.0,
         c"Effect of a number of the host (feti_body_numbering) that unknowns of several bodies share, from the next call of that function on. 0: the number is refused; 1: these unknowns move together, joined by internal equality rows.";
     index_base: i64 = I64(0), 0.0..=1.0,

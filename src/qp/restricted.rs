@@ -93,6 +93,10 @@ impl Operator for Restricted<'_> {
         self.product(x, y, |x, image| self.whole.a.try_apply(x, image))
     }
 
+    fn apply_to_share(&self, share: f64, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.product(x, y, |x, image| self.whole.a.apply_to_share(share, x, image))
+    }
+
     fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.product(x, y, |x, image| self.whole.a.approximate(x, image))
     }

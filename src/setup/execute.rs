@@ -3,7 +3,9 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex};
 
-use crate::body::{grounded, Analysis, Factorised, GeneralizedInverse, Made, NewKplus, Owed, Plan, PlanAway};
+use crate::body::{
+    grounded, Analysis, Factorised, GeneralizedInverse, Made, NewKplus, Owed, Plan, PlanAway, Precision,
+};
 use crate::error::{Error, Kind, Result};
 use crate::model::SolvedModel;
 use crate::numbers::setup::{ANALYSED, FACTORISED, ROUND, WORK};
@@ -24,8 +26,8 @@ pub(super) struct Planned<'a> {
     pub factors: Vec<Option<usize>>,
     /// The same if all bodies were on one rank.
     pub shared: Vec<Option<usize>>,
-    /// Of all bodies: the factor may be rounded.
-    pub rounded: &'a [bool],
+    /// Of all bodies.
+    pub precisions: &'a [Precision],
     /// Of all bodies: operations of the factorisation.
     pub work: &'a dyn Fn(usize) -> f64,
 }
@@ -81,7 +83,7 @@ impl Lent {
 fn make_here(
     (model, explained): (&SolvedModel, &(dyn Fn(usize, Error) -> Error + Sync)),
     plans: Vec<(usize, Analysing<Plan>)>,
-    rounded: &[bool],
+    precisions: &[Precision],
     (watch, until): (&mut Watch, f64),
     all: &mut Vec<OfBody>,
 ) -> Result<()> {
@@ -92,19 +94,16 @@ fn make_here(
     // operations grow like the power 3/2 of the entries
     let weights = (0..own.len()).map(|k| (bytes(k) as f64).powf(WORK)).collect();
     let part = SetupPart::of(model.threads(), weights, until);
-    let in_single = (0..own.len()).filter(|k| rounded[own[*k].0]).map(|k| bytes(k) / 2).sum();
+    let in_single =
+        (0..own.len()).filter(|k| precisions[own[*k].0] == Precision::Rounded).map(|k| bytes(k) / 2).sum();
     let slabs = Slabs::of(in_single)?;
     let make = |k: usize| {
         let plan = plans[k].lock().ok().and_then(|mut plan| plan.take());
         let mut plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
         let (p, analysed) = &own[k];
-        let matrix = rounded[*p].then(|| plan.matrix().clone());
         let Some(OnRank::Here(symbolic)) = analysed.on(0) else { return Err(without_ranks()) };
         plan.set_analysis(Arc::clone(&symbolic));
-        let mut made = plan.execute().map_err(|e| explained(*p, e).body(*p))?;
-        if let Some(k) = matrix {
-            made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(*p))?;
-        }
+        let made = plan.execute_in(precisions[*p], &slabs).map_err(|e| explained(*p, e).body(*p))?;
         let is_further = !Arc::ptr_eq(&made.symbolic, &symbolic);
         Ok((made, is_further))
     };
@@ -127,7 +126,7 @@ impl Prepared {
     pub(super) fn execute(
         &mut self,
         model: &SolvedModel,
-        Planned { plans, analysed, factors, shared, rounded, work }: Planned,
+        Planned { plans, analysed, factors, shared, precisions, work }: Planned,
         watch: &mut Watch,
     ) -> Result<OnRanks> {
         // on several ranks the first counts, and what would be shared on one rank does not
@@ -156,9 +155,9 @@ impl Prepared {
         for (k, Round { lent, own }) in rounds.into_iter().enumerate() {
             let left = (count - k - 1) as f64 / count as f64;
             let until = FACTORISED - left * (FACTORISED - ANALYSED);
-            let lent = self.lent(lent, rounded, watch)?;
+            let lent = self.lent(lent, precisions, watch)?;
             let explained = |p: usize, e: Error| model.bodies[by[&(p, 0)]].body.explained(e);
-            if let Err(error) = make_here((model, &explained), own, rounded, (watch, until), &mut made) {
+            if let Err(error) = make_here((model, &explained), own, precisions, (watch, until), &mut made) {
                 ended = first_of_bodies(ended, error);
             }
             for (p, answer) in lent.answers()? {
@@ -237,13 +236,13 @@ impl Prepared {
     fn lent(
         &self,
         plans: Vec<(usize, usize, Analysing<PlanAway>)>,
-        rounded: &[bool],
+        precisions: &[Precision],
         watch: &Watch,
     ) -> Result<Lent> {
         let (mut questions, mut bodies) = (Vec::new(), Vec::new());
         for (p, rank, (plan, analysed)) in plans {
             let Some(OnRank::Away(symbolic)) = analysed.on(rank) else { return Err(without_ranks()) };
-            let (asking, new) = plan.factorising(&symbolic, None, rounded[p]);
+            let (asking, new) = plan.factorising(&symbolic, None, precisions[p]);
             questions.push((bodies.len(), asking));
             bodies.push((p, new, (plan, analysed)));
         }
@@ -260,7 +259,7 @@ impl Prepared {
     ) -> Result<GeneralizedInverse> {
         let of = of.elsewhere().ok_or_else(without_ranks)?;
         let Some(OnRank::Away(symbolic)) = analysed.on(of.rank()) else { return Err(without_ranks()) };
-        let (asking, new) = plan.factorising(&symbolic, Some(of), false);
+        let (asking, new) = plan.factorising(&symbolic, Some(of), Precision::Double);
         let answer = self.ask(vec![(0, asking)])?.answers::<Made>()?.pop();
         Ok(answer.ok_or_else(without_ranks)?.1?.at(new.kplus, of.factor))
     }

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::{input_key, pattern_key, same_body, same_matrix_of, value_key, Body};
+use crate::body::{input_key, pattern_key, same_body, same_matrix_of, value_key, Body, Precision};
 use crate::dual::{DistinctRows, Size};
 use crate::error::Result;
 use crate::linalg::hash::classes;
@@ -19,7 +19,7 @@ use crate::setup::memory_limit::check_memory;
 use crate::setup::operators::Operators;
 use crate::setup::plans::{Maker, PlanOf};
 use crate::setup::prepared::Prepared;
-use crate::setup::rounding::may_be_rounded;
+use crate::setup::rounding::precisions;
 
 impl Prepared {
     /// Makes K+ of the bodies that have none; `rows`: number of distinct rows on each. Returns the dual operators suited
@@ -63,22 +63,28 @@ impl Prepared {
         let entries = self.entries(model, &representatives, &entries);
         let mut operators = self.operators(model, rows, &entries, bytes);
         let owner = |p: usize| given.get(&representatives[p]).copied().unwrap_or(representatives[p]);
-        let mut rounded = may_be_rounded(model, &operators, owner);
+        let mut precisions = precisions(model, &operators, owner);
         for plan in &plans {
             let owner = owner(plan.body);
             let there = self.bodies[owner].inverse.as_ref().map(|inverse| inverse.kplus.is_rounded());
-            rounded[plan.body] = there.unwrap_or(rounded[owner]);
+            precisions[plan.body] = match there {
+                Some(false) => Precision::Double,
+                Some(true) if model.is_piece(plan.body) => Precision::Rounded,
+                Some(true) => Precision::Single,
+                None => precisions[owner],
+            };
         }
         self.check_memory(model, &operators, bytes, on_others + operators.bytes_on_others(&ranks))?;
         let work = |p: usize| operators.sizes[p].factorisation();
         let mut pending: Vec<usize> = plans.iter().map(|plan| plan.body).collect();
         pending.dedup();
-        let planned = Planned { plans, analysed, factors, shared, rounded: &rounded, work: &work };
+        let planned = Planned { plans, analysed, factors, shared, precisions: &precisions, work: &work };
         let ended = self.execute(model, planned, watch);
         watch.phases.ended(Phase::Factorisation, begun);
         self.share(&representatives, &ranks, ended?);
         operators.factor_bytes = self.bytes_of_factors();
         self.tell_doubts(model, &pending, &watch.log)?;
+        self.tell_precision(model, &pending, &watch.log)?;
         Ok(operators)
     }
 
@@ -202,7 +208,7 @@ impl Prepared {
     ) -> Operators {
         let size = |p: usize| {
             let there = self.bodies[p].inverse.as_ref();
-            let rounded = there.is_some_and(|inverse| inverse.kplus.is_rounded());
+            let rounded = model.is_piece(p) && there.is_some_and(|inverse| inverse.kplus.is_rounded());
             let single = model.is_piece(p) && there.is_none();
             let DistinctRows { rows, places } = rows[p];
             let unknowns = model.bodies[p].body.order;
@@ -230,6 +236,18 @@ impl Prepared {
             self.bodies.iter_mut().for_each(|own| own.operator = None);
         }
         check(0).map_err(|error| operators.named(error))
+    }
+
+    /// Logs how many of these bodies have a factor in single precision; pieces are not counted.
+    fn tell_precision(&self, model: &SolvedModel, bodies: &[usize], log: &Log) -> Result<()> {
+        let is_single = |p: &&usize| {
+            let inverse = self.bodies[**p].inverse.as_ref();
+            !model.is_piece(**p) && inverse.is_some_and(|inverse| inverse.kplus.is_rounded())
+        };
+        match bodies.iter().filter(is_single).count() {
+            0 => Ok(()),
+            count => log.say(LogLevel::Phase, || format!("factors in single precision: {count}")),
+        }
     }
 
     /// Logs what rounding of the entries leaves uncertain about the null spaces of these bodies.

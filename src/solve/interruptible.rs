@@ -40,6 +40,10 @@ impl Operator for Interruptible<'_> {
         self.product(x, y, Accuracy::Full)
     }
 
+    fn apply_to_share(&self, share: f64, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.product(x, y, Accuracy::Share(share))
+    }
+
     fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.product(x, y, Accuracy::OfFactors)
     }

@@ -104,10 +104,10 @@ pub struct Boundary {
     pub dofs: Vec<usize>,
 }
 
-/// Not `exact`: by the factor alone, which may be rounded.
+/// Without a share of a whole: by the factor alone, which may be rounded.
 pub struct Multiply {
     pub form: u64,
-    pub exact: bool,
+    pub share: Option<f64>,
     pub x: Vec<f64>,
 }
 
@@ -124,7 +124,7 @@ pub struct Solve {
 }
 
 wire_struct!(Boundary { kplus, form, inside, scale, dofs });
-wire_struct!(Multiply { form, exact, x });
+wire_struct!(Multiply { form, share, x });
 wire_struct!(Entries { form, rows });
 wire_struct!(Solve { kplus, exact, x });
 wire_struct!(NullSpace { kplus });

@@ -88,9 +88,9 @@ impl FormElsewhere {
         self.order
     }
 
-    /// The question for the product with x; not `exact`: by a rounded factor alone.
-    pub fn multiplying(&self, exact: bool, x: Vec<f64>) -> Asking {
-        Asking::new(self.token.rank, Name::Multiply, Multiply { form: self.token.number, exact, x })
+    /// The question for the product with x, a share of a whole; without it, by a rounded factor alone.
+    pub fn multiplying(&self, share: Option<f64>, x: Vec<f64>) -> Asking {
+        Asking::new(self.token.rank, Name::Multiply, Multiply { form: self.token.number, share, x })
     }
 
     /// The product, which must have its length.

@@ -186,8 +186,8 @@ impl Bodies {
             Task::Analyse(of) => sent(self.analyse(of)),
             Task::Factorise(of) => sent(self.factorise(of)),
             Task::Boundary(of) => sent(self.boundary(of)),
-            Task::Multiply(Multiply { form: name, exact, x }) => {
-                sent(form(name).and_then(|form| form.product(&x, exact)))
+            Task::Multiply(Multiply { form: name, share, x }) => {
+                sent(form(name).and_then(|form| form.product(&x, share)))
             }
             Task::Entries(Entries { form: name, rows }) => {
                 sent(form(name).and_then(|form| form.block(&rows)))
@@ -233,7 +233,7 @@ impl Bodies {
 
     fn factorise(
         &self,
-        Factorise { kplus, plan, symbolic, further, of, rounded }: Factorise,
+        Factorise { kplus, plan, symbolic, further, of, precision }: Factorise,
     ) -> Result<Made> {
         let planned = self.store.find::<PlanHere>(plan)?;
         let mut plan = planned.take()?;
@@ -247,11 +247,8 @@ impl Bodies {
         }
         let symbolic = self.store.find::<Symbolic>(symbolic)?;
         plan.set_analysis(Arc::clone(&symbolic));
-        let rounds = rounded.then(|| plan.matrix().clone());
-        let mut made = plan.execute().map_err(|error| planned.body.explained(error))?;
-        if let Some(k) = rounds {
-            made.inverse = made.inverse.rounded(&k, &Slabs::of(0)?)?;
-        }
+        let made =
+            plan.execute_in(precision, &Slabs::of(0)?).map_err(|error| planned.body.explained(error))?;
         let is_further = !Arc::ptr_eq(&made.symbolic, &symbolic);
         let told = Made::of(&made, is_further);
         if is_further {
@@ -276,7 +273,7 @@ impl Bodies {
         if x.len() != kplus.order() {
             return Err(damaged());
         }
-        kplus.solve_in_place(exact, &mut x)?;
+        kplus.solve_in_place(exact.then_some(1.0), &mut x)?;
         Ok(x)
     }
 
@@ -312,8 +309,12 @@ enum Task {
 
 /// `B K+ B'`, assembled or not, or S_b.
 enum Form {
-    Explicit(Packed),
-    Implicit { kplus: Arc<GeneralizedInverse>, rows: Arc<Csr> },
+    /// Products that are to be exact are those of K+ if its factor is rounded.
+    Explicit(Packed, Option<(Arc<GeneralizedInverse>, Arc<Csr>)>),
+    Implicit {
+        kplus: Arc<GeneralizedInverse>,
+        rows: Arc<Csr>,
+    },
     Boundary(Box<dyn Operator + Send>),
 }
 
@@ -330,40 +331,42 @@ impl Form {
             Some(of) => Arc::new(selected(rows, &of)?),
         };
         Ok(match explicit {
-            true => Self::Explicit(kplus.inverse_form(&rows)?),
+            true => {
+                let exact = kplus.is_rounded().then(|| (Arc::clone(kplus), Arc::clone(&rows)));
+                Self::Explicit(kplus.inverse_form(&rows)?, exact)
+            }
             false => Self::Implicit { kplus: Arc::clone(kplus), rows },
         })
     }
 
     fn order(&self) -> usize {
         match self {
-            Self::Explicit(form) => form.order(),
+            Self::Explicit(form, _) => form.order(),
             Self::Implicit { rows, .. } => rows.rows(),
             Self::Boundary(form) => form.order(),
         }
     }
 
-    fn product(&self, x: &[f64], exact: bool) -> Result<Vec<f64>> {
+    fn product(&self, x: &[f64], share: Option<f64>) -> Result<Vec<f64>> {
         if x.len() != self.order() {
             return Err(damaged());
         }
-        let mut image = zeros(x.len(), "a product with the dual operator")?;
-        match self {
-            Self::Explicit(form) => form.apply(x, &mut image),
-            Self::Boundary(form) => form.apply(x, &mut image),
-            Self::Implicit { kplus, rows } => {
-                let mut moved = zeros(rows.cols, "a product with the dual operator")?;
-                rows.mul_transposed_add(1.0, x, &mut moved);
-                kplus.solve_in_place(exact, &mut moved)?;
-                rows.mul(&moved, &mut image);
+        let form: &dyn Operator = match self {
+            Self::Explicit(_, Some((kplus, rows))) if share.is_some() => {
+                return kplus.product_between(rows, x, share);
             }
-        }
+            Self::Implicit { kplus, rows } => return kplus.product_between(rows, x, share),
+            Self::Explicit(form, _) => form,
+            Self::Boundary(form) => &**form,
+        };
+        let mut image = zeros(x.len(), "a product with the dual operator")?;
+        form.apply(x, &mut image);
         Ok(image)
     }
 
     fn block(&self, rows: &[usize]) -> Result<Packed> {
         match self {
-            Self::Explicit(form) => {
+            Self::Explicit(form, _) => {
                 if rows.iter().any(|row| *row >= form.order()) {
                     return Err(damaged());
                 }

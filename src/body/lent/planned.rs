@@ -6,6 +6,7 @@ use crate::body::elsewhere::{Asking, BodyElsewhere, Elsewhere, Name};
 use crate::body::layout::{Layout, Symbolic};
 use crate::body::plan::Plan;
 use crate::body::planning::Planning;
+use crate::body::rounded::Precision;
 use crate::body::Body;
 use crate::error::{Error, Kind, Result};
 use crate::ranks::{wire_struct, Token};
@@ -44,15 +45,14 @@ pub struct Analysis {
     pub bytes: usize,
 }
 
-/// Makes K+ by a plan: with the factor of the K+ `of` if given; otherwise by this analysis, with a factor of its own, which may be
-/// `rounded` to single precision. `further`: the name of the analysis if it has to be another. Answer: `Made`.
+/// Makes K+ by a plan: with the factor of the K+ `of` if given; otherwise by this analysis, with a factor of its own. `further`: the name of the analysis if it has to be another. Answer: `Made`.
 pub(super) struct Factorise {
     pub kplus: u64,
     pub plan: u64,
     pub symbolic: u64,
     pub further: u64,
     pub of: Option<u64>,
-    pub rounded: bool,
+    pub precision: Precision,
 }
 
 wire_struct!(PlanBody { plan, body, with });
@@ -60,7 +60,7 @@ wire_struct!(Planned { layout, is_known });
 wire_struct!(Follow { plan, layouts });
 wire_struct!(Analyse { plan, symbolic });
 wire_struct!(Analysis { entries, bytes });
-wire_struct!(Factorise { kplus, plan, symbolic, further, of, rounded });
+wire_struct!(Factorise { kplus, plan, symbolic, further, of, precision });
 
 /// A plan that another rank keeps.
 pub struct PlanAway {
@@ -118,11 +118,16 @@ impl PlanAway {
     }
 
     /// `of`: with the factor of this K+.
-    pub fn factorising(&self, symbolic: &Token, of: Option<&Elsewhere>, rounded: bool) -> (Asking, NewKplus) {
+    pub fn factorising(
+        &self,
+        symbolic: &Token,
+        of: Option<&Elsewhere>,
+        precision: Precision,
+    ) -> (Asking, NewKplus) {
         let new = NewKplus { kplus: self.token(), further: self.token() };
         let [kplus, further] = [&new.kplus, &new.further].map(|token| token.number);
         let (plan, symbolic, of) = (self.name.number, symbolic.number, of.map(Elsewhere::number));
-        let of = Factorise { kplus, plan, symbolic, further, of, rounded };
+        let of = Factorise { kplus, plan, symbolic, further, of, precision };
         (Asking::new(self.name.rank, Name::Factorise, of), new)
     }
 

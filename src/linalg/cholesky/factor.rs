@@ -8,17 +8,12 @@ use crate::linalg::cholesky::analysis::Analysis;
 use crate::numbers::linalg::HELD_PIVOT;
 
 use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
+use crate::linalg::cholesky::numeric::Entry;
 use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::{Csr, Symmetric};
 use crate::platform::memory::{headroom, reserved, zeros, Headroom, PRODUCTS};
-use crate::platform::pages::{Number, Pages};
+use crate::platform::pages::Pages;
 use crate::platform::slabs::Slabs;
-
-/// The type of the entries of L. All sums are in double precision.
-pub trait Entry: Number + Into<f64> {}
-
-impl Entry for f64 {}
-impl Entry for f32 {}
 
 /// The factor L with its analysis; its entries are doubles by default.
 pub struct Cholesky<T: Entry = f64> {
@@ -40,7 +35,7 @@ pub struct Breakdown {
 impl Analysis {
     /// Bytes of L and of the workspace for its computation.
     pub fn bytes(&self) -> usize {
-        self.nodes.values() * size_of::<f64>() + self.nodes.bytes() + multifrontal::bytes(&self.nodes)
+        self.nodes.values() * size_of::<f64>() + self.nodes.bytes() + multifrontal::bytes::<f64>(&self.nodes)
     }
 
     /// L of `by` times a matrix with the analysed pattern; `Ok(Err(_))` if it is not positive definite.
@@ -65,12 +60,12 @@ impl Analysis {
     }
 
     /// As `attempt`; if `hold` is positive, pivots up to `hold` are held.
-    pub fn pivoted(
+    pub fn pivoted<T: Entry>(
         self: &Arc<Self>,
         matrix: &Symmetric,
         by: f64,
         hold: f64,
-    ) -> Result<std::result::Result<Cholesky, usize>> {
+    ) -> Result<std::result::Result<Cholesky<T>, usize>> {
         let _room = self.factorisation_headroom()?;
         let columns = self.columns(matrix, by, |_| true)?;
         let values = multifrontal::factorize(&self.nodes, &columns, hold)?;
@@ -147,7 +142,7 @@ impl Analysis {
 /// A column and its product with the inverse of the leading block, or the breakdown of that block.
 type Before = std::result::Result<(Vec<f64>, Vec<f64>), Breakdown>;
 
-impl Cholesky {
+impl<T: Entry> Cholesky<T> {
     /// Position of a dof in the elimination, `NONE` for held dofs.
     pub(super) fn position(&self, dof: usize) -> usize {
         if self.held.binary_search(&dof).is_ok() {
@@ -170,7 +165,7 @@ impl Cholesky {
     pub fn pivots(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let pivots = self.analysis.nodes.nodes().flat_map(move |node| {
             let (height, start) = (node.height(), node.panel.start);
-            (0..node.width).map(move |i| self.values[start + i * height + i].powi(2))
+            (0..node.width).map(move |i| self.values[start + i * height + i].into().powi(2))
         });
         self.analysis.order.iter().copied().zip(pivots)
     }
@@ -187,7 +182,9 @@ impl Cholesky {
     pub fn smallest_pivot(&self) -> f64 {
         self.pivots().fold(f64::INFINITY, |smallest, (_, pivot)| smallest.min(pivot))
     }
+}
 
+impl Cholesky {
     /// L rounded to single precision, stored in `slabs`.
     pub fn rounded(&self, slabs: &Slabs) -> Result<Cholesky<f32>> {
         let mut values = slabs.zeros(self.values.len(), "a rounded Cholesky factor")?;

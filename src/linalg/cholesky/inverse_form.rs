@@ -17,6 +17,7 @@ use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::subtrees::{each, outside, parts, shared};
 use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
 use crate::linalg::cholesky::numeric::updates::{RowMap, Updates};
+use crate::linalg::cholesky::numeric::Entry;
 use crate::linalg::{Cholesky, Csr, Packed};
 use crate::platform::memory::{filled, headroom, PRODUCTS};
 use crate::platform::pages::Pages;
@@ -32,7 +33,7 @@ const SQUARE: usize = 160;
 const BLOCK: usize = 192;
 
 /// The m x m matrix for `rows` (m x n, over all dofs of the body).
-pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
+pub fn inverse_form<T: Entry>(cholesky: &Cholesky<T>, rows: &Csr) -> Result<Packed> {
     let nodes = &cholesky.analysis.nodes;
     // lists by supernode, by dof and by entry of B, which grow in small allocations
     let small_pieces = 96 * nodes.count() + 8 * nodes.order() + 96 * rows.col.len();
@@ -41,7 +42,7 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     let mut form = Packed::zeros(rows.rows())?;
     let parts = parts(nodes);
     let run = |range: &Range<usize>| reach.part(range.clone());
-    let done: Vec<Result<FormShare>> = match rayon::current_thread_index() {
+    let done: Vec<Result<FormShare<T>>> = match rayon::current_thread_index() {
         Some(_) if parts.len() > 1 => parts.par_iter().map(run).collect(),
         _ => parts.iter().map(run).collect(),
     };
@@ -64,8 +65,8 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
 }
 
 /// The rows of B that reach each supernode.
-struct Reach<'a> {
-    cholesky: &'a Cholesky,
+struct Reach<'a, T: Entry> {
+    cholesky: &'a Cholesky<T>,
     nodes: &'a Supernodes,
     /// Entries of P B' by supernode: row of B, position, value.
     own: Vec<Vec<(u32, u32, f64)>>,
@@ -76,13 +77,13 @@ struct Reach<'a> {
 }
 
 /// The contribution of a subtree to the form, and its update for the rows above.
-struct FormShare {
+struct FormShare<T: Entry> {
     form: Packed,
-    update: Pages,
+    update: Pages<T>,
 }
 
-impl<'a> Reach<'a> {
-    fn of(cholesky: &'a Cholesky, rows: &Csr) -> Result<Self> {
+impl<'a, T: Entry> Reach<'a, T> {
+    fn of(cholesky: &'a Cholesky<T>, rows: &Csr) -> Result<Self> {
         let nodes = &cholesky.analysis.nodes;
         let mut own: Vec<Vec<(u32, u32, f64)>> = filled(nodes.count(), Vec::new(), WHAT)?;
         for i in 0..rows.rows() {
@@ -108,7 +109,7 @@ impl<'a> Reach<'a> {
         self.nodes.node(s).rows.len() * self.columns[s].len()
     }
 
-    fn part(&self, range: Range<usize>) -> Result<FormShare> {
+    fn part(&self, range: Range<usize>) -> Result<FormShare<T>> {
         let root = range.end - 1;
         let rows = &self.columns[root];
         let mut form = Packed::zeros(rows.len())?;
@@ -121,19 +122,19 @@ impl<'a> Reach<'a> {
 }
 
 /// Processes supernodes one after the other.
-struct FormTask<'a> {
-    reach: &'a Reach<'a>,
+struct FormTask<'a, T: Entry> {
+    reach: &'a Reach<'a, T>,
     /// Row in the present front by position.
     local: Vec<u32>,
-    updates: Updates<'a>,
+    updates: Updates<'a, T>,
     /// Rows of Y of the present supernode: width x columns.
-    y: Pages,
+    y: Pages<T>,
     /// Products of the columns of two tiles.
-    product: Pages,
+    product: Pages<T>,
 }
 
-impl<'a> FormTask<'a> {
-    fn new(reach: &'a Reach<'a>, sequence: impl Iterator<Item = usize> + Clone) -> Result<Self> {
+impl<'a, T: Entry> FormTask<'a, T> {
+    fn new(reach: &'a Reach<'a, T>, sequence: impl Iterator<Item = usize> + Clone) -> Result<Self> {
         let nodes = reach.nodes;
         let local = filled(nodes.order(), 0, WHAT)?;
         let seen = sequence.filter(|&s| !reach.columns[s].is_empty());
@@ -155,10 +156,10 @@ impl<'a> FormTask<'a> {
         let node = self.reach.nodes.node(s);
         node.front_rows().enumerate().for_each(|(at, row)| self.local[row] = at as u32);
         let y = &mut self.y[..node.width * columns.len()];
-        y.fill(0.0);
+        y.fill(T::of(0.0));
         for &(row, position, value) in &self.reach.own[s] {
             let column = columns.partition_point(|&other| other < row);
-            y[column * node.width + position as usize - node.begin] += value;
+            y[column * node.width + position as usize - node.begin] += T::of(value);
         }
         let len = self.reach.update_len(s);
         let (update, children) = self.updates.open(s, len);
@@ -171,7 +172,7 @@ impl<'a> FormTask<'a> {
                 columns: of.map(|row| columns.partition_point(|other| other < row)).collect(),
             }
         };
-        let children: Vec<FormBelow<'_>> = children.into_iter().map(child).collect();
+        let children: Vec<FormBelow<'_, T>> = children.into_iter().map(child).collect();
         let panel = &self.reach.cholesky.values[node.panel.clone()];
         let work = node.work() / node.width as f64 * columns.len() as f64;
         each(shared(work), tiles(&node, y, update), |mut tile| {
@@ -189,16 +190,16 @@ impl<'a> FormTask<'a> {
 }
 
 /// Some columns of Y at a supernode.
-struct FormTile<'a> {
+struct FormTile<'a, T> {
     /// Range among the columns of the supernode.
     columns: Range<usize>,
     /// width x columns
-    above: &'a mut [f64],
+    above: &'a mut [T],
     /// rows below x columns
-    below: &'a mut [f64],
+    below: &'a mut [T],
 }
 
-fn tiles<'a>(node: &Node<'_>, mut y: &'a mut [f64], mut update: &'a mut [f64]) -> Vec<FormTile<'a>> {
+fn tiles<'a, T>(node: &Node<'_>, mut y: &'a mut [T], mut update: &'a mut [T]) -> Vec<FormTile<'a, T>> {
     let count = y.len() / node.width;
     let mut tiles = Vec::with_capacity(count.div_ceil(TILE));
     for first in (0..count).step_by(TILE) {
@@ -211,11 +212,11 @@ fn tiles<'a>(node: &Node<'_>, mut y: &'a mut [f64], mut update: &'a mut [f64]) -
     tiles
 }
 
-impl FormTile<'_> {
+impl<T: Entry> FormTile<'_, T> {
     /// `Y_1 <- L11^-1 Y_1`, `Y_2 <- -L21 Y_1`
-    fn solve(&mut self, panel: &[f64], node: &Node<'_>) {
+    fn solve(&mut self, panel: &[T], node: &Node<'_>) {
         let panel = MatRef::from_column_major_slice(panel, node.height(), node.width);
-        let count = self.columns.len();
+        let (count, minus) = (self.columns.len(), T::of(-1.0));
         let mut above = MatMut::from_column_major_slice_mut(self.above, node.width, count);
         for first in (0..node.width).step_by(BLOCK) {
             let end = node.width.min(first + BLOCK);
@@ -225,25 +226,25 @@ impl FormTile<'_> {
             let triangle = columns.subrows(first, end - first);
             solve_lower_triangular_in_place(triangle, own.as_mut(), Par::Seq);
             let below = columns.subrows(end, node.width - end);
-            matmul(later, Accum::Add, below, own.as_ref(), -1.0, Par::Seq);
+            matmul(later, Accum::Add, below, own.as_ref(), minus, Par::Seq);
         }
         let below = MatMut::from_column_major_slice_mut(self.below, node.rows.len(), count);
         let l21 = panel.subrows(node.width, node.rows.len());
-        matmul(below, Accum::Replace, l21, above.as_ref(), -1.0, Par::Seq);
+        matmul(below, Accum::Replace, l21, above.as_ref(), minus, Par::Seq);
     }
 }
 
 /// The update of a child, in terms of its parent.
-struct FormBelow<'a> {
-    values: &'a [f64],
+struct FormBelow<'a, T> {
+    values: &'a [T],
     rows: RowMap,
     /// Position of its columns among those of the parent, ascending.
     columns: Vec<usize>,
 }
 
-impl FormBelow<'_> {
+impl<T: Entry> FormBelow<'_, T> {
     /// Adds to the rows of the parent's columns.
-    fn add_above(&self, tile: &mut FormTile<'_>) {
+    fn add_above(&self, tile: &mut FormTile<'_, T>) {
         let rows = 0..self.rows.inside;
         let width = tile.above.len() / tile.columns.len();
         for (from, column) in self.columns_of(&tile.columns) {
@@ -253,7 +254,7 @@ impl FormBelow<'_> {
     }
 
     /// Adds to the rows below them.
-    fn add_below(&self, tile: &mut FormTile<'_>) {
+    fn add_below(&self, tile: &mut FormTile<'_, T>) {
         let rows = self.rows.inside..self.rows.to.len();
         let (width, below) = (tile.above.len(), tile.below.len());
         let (width, below) = (width / tile.columns.len(), below / tile.columns.len());
@@ -264,7 +265,7 @@ impl FormBelow<'_> {
     }
 
     /// Columns of the child and their positions in a tile of the parent.
-    fn columns_of(&self, tile: &Range<usize>) -> impl Iterator<Item = (&[f64], usize)> {
+    fn columns_of(&self, tile: &Range<usize>) -> impl Iterator<Item = (&[T], usize)> {
         let rows = self.rows.to.len();
         let place = |column: usize| self.columns.partition_point(|&other| other < column);
         let first = tile.start;
@@ -274,20 +275,23 @@ impl FormBelow<'_> {
 }
 
 /// `form += Y'Y`, entry (i, j) at (`places[i]`, `places[j]`); `product`: workspace for a tile.
-fn add_products(y: MatRef<'_, f64>, places: &[usize], product: &mut [f64], form: &mut Packed) {
+fn add_products<T: Entry>(y: MatRef<'_, T>, places: &[usize], product: &mut [T], form: &mut Packed) {
     let tile = |first: usize| first..places.len().min(first + SQUARE);
     for right in (0..places.len()).step_by(SQUARE).map(tile) {
         for left in (right.start..places.len()).step_by(SQUARE).map(tile) {
             let product = &mut product[..left.len() * right.len()];
             let to = MatMut::from_column_major_slice_mut(product, left.len(), right.len());
             let columns = |range: &Range<usize>| y.subcols(range.start, range.len());
-            matmul(to, Accum::Replace, columns(&left).transpose(), columns(&right), 1.0, Par::Seq);
+            matmul(to, Accum::Replace, columns(&left).transpose(), columns(&right), T::of(1.0), Par::Seq);
             if left == right {
                 form.add_lower(&places[left], product);
                 continue;
             }
             for (column, &j) in product.chunks_exact(left.len()).zip(&places[right.clone()]) {
-                places[left.clone()].iter().zip(column).for_each(|(&i, value)| form.add(i, j, *value));
+                places[left.clone()]
+                    .iter()
+                    .zip(column)
+                    .for_each(|(&i, value)| form.add(i, j, (*value).into()));
             }
         }
     }

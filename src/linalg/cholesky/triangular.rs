@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use crate::error::Result;
-use crate::linalg::cholesky::factor::{Cholesky, Entry};
+use crate::linalg::cholesky::factor::Cholesky;
+use crate::linalg::cholesky::numeric::Entry;
 use crate::platform::memory::zeros;
 
 /// Columns per block: the vector is read once for each block.
@@ -14,8 +15,7 @@ const AHEAD: usize = 32;
 impl<T: Entry> Cholesky<T> {
     /// Workspace of a solve.
     pub(super) fn workspace(&self) -> Result<Vec<f64>> {
-        let highest = self.analysis.nodes.nodes().map(|node| node.height()).max().unwrap_or(0);
-        zeros(highest, "a solution")
+        zeros(self.analysis.highest_front(), "a solution")
     }
 
     /// `y <- L^-1 y`, in the order of elimination, for the columns of some supernodes, which no other supernodes precede.

@@ -3,6 +3,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::dot;
+use crate::linalg::Operator;
 use crate::numbers::friction::{CYCLING, INNER_TRIALS, MODEL_SOLVED, NEWTON_FALLS, RHO, TRIALS};
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::{Face, Model};
@@ -199,7 +200,7 @@ impl Run<'_, '_> {
         self.without_motions(&mut v)?;
         let none = vec![0.0; self.problem.qp.e.len()];
         let unbalanced = self.imbalance(&v, &none)?.sqrt();
-        let image = self.product(&v)?;
+        let image = self.approximate(&v)?;
         self.pairs.keep(Pair { v, image, unbalanced });
         let nodes = self.problem.cones.nodes().iter().zip(&model.face.closed);
         let open: Vec<bool> = nodes.filter_map(|(node, closed)| node.own_normal().map(|_| !closed)).collect();
@@ -218,10 +219,23 @@ impl Run<'_, '_> {
 
     /// `F v`, counted.
     pub fn product(&mut self, v: &[f64]) -> Result<Vec<f64>> {
+        self.counted(v, |a, image| a.try_apply(v, image))
+    }
+
+    /// `F v` or an approximation, counted: steps from a gradient that was computed anew need no more.
+    fn approximate(&mut self, v: &[f64]) -> Result<Vec<f64>> {
+        self.counted(v, |a, image| a.approximate(v, image))
+    }
+
+    fn counted(
+        &mut self,
+        v: &[f64],
+        product: impl Fn(&dyn Operator, &mut [f64]) -> Result<()>,
+    ) -> Result<Vec<f64>> {
         interrupt::check()?;
         tally::costly();
         let mut image = vec![0.0; v.len()];
-        self.problem.qp.a.try_apply(v, &mut image)?;
+        product(self.problem.qp.a, &mut image)?;
         self.counts.products += 1;
         Ok(image)
     }

@@ -54,10 +54,29 @@ impl Operator for Supported<'_> {
         }
     }
 
-    /// F and, for the supports, `1/kappa`.
     fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.product(x, y, |f, x, y| f.try_apply(x, y))
+    }
+
+    fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.product(x, y, |f, x, y| f.approximate(x, y))
+    }
+
+    fn has_approximation(&self) -> bool {
+        self.of.qp.a.has_approximation()
+    }
+}
+
+impl Supported<'_> {
+    /// F and, for the supports, `1/kappa`.
+    fn product(
+        &self,
+        x: &[f64],
+        y: &mut [f64],
+        of_rows: impl Fn(&dyn Operator, &[f64], &mut [f64]) -> Result<()>,
+    ) -> Result<()> {
         let (rows, supports) = y.split_at_mut(self.of.qp.b.len());
-        self.of.qp.a.try_apply(&x[..rows.len()], rows)?;
+        of_rows(self.of.qp.a, &x[..rows.len()], rows)?;
         supports.iter_mut().zip(&x[rows.len()..]).for_each(|(y, x)| *y = x / self.kappa);
         Ok(())
     }

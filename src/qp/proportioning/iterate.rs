@@ -38,6 +38,8 @@ pub struct Iterate<'a> {
     pub curvature: f64,
     /// `p'A p` and A p of the last product that was used for L.
     pub observed: Option<(f64, Vec<f64>)>,
+    /// A point and its product with A, where products were approximate since.
+    exact: Option<(Vec<f64>, Vec<f64>)>,
     /// Possible error of the updates of g relative to A x - b.
     pub drift: Drift,
     pub counts: Counts,
@@ -59,6 +61,7 @@ impl<'a> Iterate<'a> {
             cut: false,
             curvature: 0.0,
             observed: None,
+            exact: None,
             drift: Drift::default(),
             counts: Counts::default(),
             qp,
@@ -87,8 +90,19 @@ impl<'a> Iterate<'a> {
     /// minimal along the stored directions, to which later directions are conjugate.
     pub fn refresh(&mut self) -> Result<()> {
         let mut g = vec![0.0; self.x.len()];
-        self.qp.a.try_apply(&self.x, &mut g)?;
+        match &self.exact {
+            Some((from, image)) => {
+                let step: Vec<f64> = self.x.iter().zip(from).map(|(x, from)| x - from).collect();
+                let share = ratio(norm(&step), norm(&self.x)).clamp(f64::MIN_POSITIVE, 1.0);
+                self.qp.a.apply_to_share(share, &step, &mut g)?;
+                axpy(1.0, image, &mut g);
+            }
+            None => self.qp.a.try_apply(&self.x, &mut g)?,
+        }
         self.counts.products += 1;
+        if self.qp.a.has_approximation() {
+            self.exact = Some((self.x.clone(), g.clone()));
+        }
         axpy(-1.0, self.qp.b, &mut g);
         self.g = g;
         let before = self.r.clone();

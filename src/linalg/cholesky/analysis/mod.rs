@@ -71,6 +71,11 @@ impl Analysis {
         self.nodes.nodes().map(|node| node.work()).sum()
     }
 
+    /// Rows of the highest front.
+    pub fn highest_front(&self) -> usize {
+        self.nodes.nodes().map(|node| node.height()).max().unwrap_or(0)
+    }
+
     /// Entries of L.
     pub fn entries(&self) -> usize {
         self.nodes.values()

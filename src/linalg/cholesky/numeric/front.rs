@@ -18,6 +18,7 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::linalg::cholesky::analysis::subtrees::each;
+use crate::linalg::cholesky::numeric::Entry;
 use crate::numbers::linalg::HELD_PIVOT;
 
 /// Columns of a tile.
@@ -50,14 +51,14 @@ pub fn update_column(b: usize, j: usize) -> Range<usize> {
 }
 
 /// Workspace of the dense kernels.
-pub fn scratch() -> StackReq {
-    cholesky_in_place_scratch::<f64>(BLOCK, Par::Seq, Default::default())
+pub fn scratch<T: Entry>() -> StackReq {
+    cholesky_in_place_scratch::<T>(BLOCK, Par::Seq, Default::default())
 }
 
 /// Factorises the panel, height x width, column-major. `parallel`: the threads of the present pool share the tiles. If
 /// `hold` is positive, pivots up to `hold` are held. `Err`: the column whose pivot is not positive.
-pub fn factorize(
-    panel: &mut [f64],
+pub fn factorize<T: Entry>(
+    panel: &mut [T],
     width: usize,
     hold: f64,
     workspace: &mut MemBuffer,
@@ -84,12 +85,12 @@ pub fn factorize(
 
 /// The update from a factorised panel. `complete` adds the updates of the children to some of its columns, on and below
 /// the diagonal.
-pub fn update(
-    panel: &[f64],
+pub fn update<T: Entry>(
+    panel: &[T],
     width: usize,
-    update: &mut [f64],
+    update: &mut [T],
     parallel: bool,
-    complete: impl Fn(&mut Tile<'_>) + Send + Sync,
+    complete: impl Fn(&mut Tile<'_, T>) + Send + Sync,
 ) {
     let height = panel.len() / width.max(1);
     let below = height - width;
@@ -103,14 +104,14 @@ pub fn update(
 }
 
 /// Some columns of an update, from the diagonal of the first column down.
-pub struct Tile<'a> {
+pub struct Tile<'a, T> {
     pub columns: Range<usize>,
-    values: &'a mut [f64],
+    values: &'a mut [T],
 }
 
-impl Tile<'_> {
+impl<T> Tile<'_, T> {
     /// Column j of the update from the row j on.
-    pub fn column(&mut self, j: usize) -> &mut [f64] {
+    pub fn column(&mut self, j: usize) -> &mut [T] {
         let height = self.values.len() / self.columns.len();
         let column = j - self.columns.start;
         &mut self.values[column * height + column..(column + 1) * height]
@@ -118,7 +119,7 @@ impl Tile<'_> {
 }
 
 /// The tiles of an update of order b.
-fn tiles(mut update: &mut [f64], b: usize) -> Vec<Tile<'_>> {
+fn tiles<T>(mut update: &mut [T], b: usize) -> Vec<Tile<'_, T>> {
     let mut tiles = Vec::with_capacity(b.div_ceil(TILE));
     for first in (0..b).step_by(TILE) {
         let (rows, columns) = (b - first, TILE.min(b - first));
@@ -130,8 +131,8 @@ fn tiles(mut update: &mut [f64], b: usize) -> Vec<Tile<'_>> {
 }
 
 /// One block of columns of this height, from row `first` on: the triangle, then the rows below.
-fn factorize_block(
-    columns: &mut [f64],
+fn factorize_block<T: Entry>(
+    columns: &mut [T],
     (height, first): (usize, usize),
     hold: f64,
     workspace: &mut MemBuffer,
@@ -163,19 +164,22 @@ fn factorize_block(
 }
 
 /// L of a small block, column by column; pivots up to `hold` are held.
-fn factorize_holding(mut a: MatMut<'_, f64>, hold: f64) -> Result<(), usize> {
+fn factorize_holding<T: Entry>(mut a: MatMut<'_, T>, hold: f64) -> Result<(), usize> {
     let n = a.ncols();
     for j in 0..n {
-        let pivot = a[(j, j)];
+        let pivot: f64 = a[(j, j)].into();
         if pivot.is_nan() {
             return Err(j);
         }
-        let root = if pivot > hold { pivot.sqrt() } else { HELD_PIVOT.sqrt() };
+        let root = T::of(if pivot > hold { pivot.sqrt() } else { HELD_PIVOT.sqrt() });
         a[(j, j)] = root;
         (j + 1..n).for_each(|i| a[(i, j)] /= root);
         for k in j + 1..n {
             let v = a[(k, j)];
-            (k..n).for_each(|i| a[(i, k)] -= v * a[(i, j)]);
+            for i in k..n {
+                let product = v * a[(i, j)];
+                a[(i, k)] -= product;
+            }
         }
     }
     Ok(())
@@ -183,13 +187,14 @@ fn factorize_holding(mut a: MatMut<'_, f64>, hold: f64) -> Result<(), usize> {
 
 /// `tile <- tile - a a_1'` or `- a a_1'`, on and below the diagonal of the first rows; a_1 are the first rows of a, one
 /// per column of the tile.
-fn subtract_product(tile: MatMut<'_, f64>, a: MatRef<'_, f64>, to: Accum) {
+fn subtract_product<T: Entry>(tile: MatMut<'_, T>, a: MatRef<'_, T>, to: Accum) {
     let columns = tile.ncols();
     let first = a.subrows(0, columns);
     let (top, below) = tile.split_at_row_mut(columns);
     let (full, lower) = (BlockStructure::Rectangular, BlockStructure::TriangularLower);
-    triangular::matmul(top, lower, to, first, full, first.transpose(), full, -1.0, Par::Seq);
-    matmul(below, to, a.subrows(columns, a.nrows() - columns), first.transpose(), -1.0, Par::Seq);
+    let minus = T::of(-1.0);
+    triangular::matmul(top, lower, to, first, full, first.transpose(), full, minus, Par::Seq);
+    matmul(below, to, a.subrows(columns, a.nrows() - columns), first.transpose(), minus, Par::Seq);
 }
 
 #[cfg(test)]

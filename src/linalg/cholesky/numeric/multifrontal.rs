@@ -14,6 +14,7 @@ use crate::linalg::cholesky::analysis::subtrees::{outside, shared, subtrees};
 use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
 use crate::linalg::cholesky::numeric::front::{self, Tile};
 use crate::linalg::cholesky::numeric::updates::{self, RowMap, Updates};
+use crate::linalg::cholesky::numeric::Entry;
 use crate::platform::memory::{copied, filled, refusal};
 use crate::platform::pages::Pages;
 use crate::platform::Interrupt;
@@ -31,12 +32,16 @@ pub struct LowerColumns {
 type Pivoted<T> = std::result::Result<T, usize>;
 
 /// L by panels; if `hold` is positive, pivots up to `hold` are held.
-pub fn factorize(nodes: &Supernodes, matrix: &LowerColumns, hold: f64) -> Result<Pivoted<Pages>> {
+pub fn factorize<T: Entry>(
+    nodes: &Supernodes,
+    matrix: &LowerColumns,
+    hold: f64,
+) -> Result<Pivoted<Pages<T>>> {
     let mut values = Pages::zeros(nodes.values(), "a Cholesky factor")?;
     let subtrees = subtrees(nodes);
     let tasks = split(nodes, &subtrees, &mut values);
     let (whole, interrupt) = ((nodes, matrix, hold), Interrupt::present());
-    let run = |(range, panels): (Range<usize>, &mut [f64])| {
+    let run = |(range, panels): (Range<usize>, &mut [T])| {
         Task::new(whole, range.clone(), &interrupt)?.eliminate_subtree(range, panels)
     };
     let left: Vec<_> = match tasks.len() {
@@ -109,9 +114,9 @@ pub fn renew(
 }
 
 /// Bytes for the factorisation on one thread in addition to L and the matrix.
-pub fn bytes(nodes: &Supernodes) -> usize {
+pub fn bytes<T>(nodes: &Supernodes) -> usize {
     let waiting: usize = updates::most(nodes, 0..nodes.count(), |s| update_len(nodes, s)).iter().sum();
-    waiting * size_of::<f64>() + nodes.order() * size_of::<u32>()
+    waiting * size_of::<T>() + nodes.order() * size_of::<u32>()
 }
 
 fn update_len(nodes: &Supernodes, s: usize) -> usize {
@@ -119,11 +124,11 @@ fn update_len(nodes: &Supernodes, s: usize) -> usize {
 }
 
 /// Splits the values into the panels of every subtree.
-fn split<'a>(
+fn split<'a, T>(
     nodes: &Supernodes,
     subtrees: &[Range<usize>],
-    mut values: &'a mut [f64],
-) -> Vec<(Range<usize>, &'a mut [f64])> {
+    mut values: &'a mut [T],
+) -> Vec<(Range<usize>, &'a mut [T])> {
     let mut at = 0;
     let mut tasks = Vec::with_capacity(subtrees.len());
     for range in subtrees {
@@ -137,25 +142,25 @@ fn split<'a>(
 }
 
 /// Eliminates supernodes one after the other.
-struct Task<'a> {
+struct Task<'a, T: Entry> {
     nodes: &'a Supernodes,
     matrix: &'a LowerColumns,
     hold: f64,
     /// Row in the present front by position.
     local: Vec<u32>,
-    updates: Updates<'a>,
+    updates: Updates<'a, T>,
     workspace: MemBuffer,
     interrupt: &'a Interrupt,
 }
 
-impl<'a> Task<'a> {
+impl<'a, T: Entry> Task<'a, T> {
     fn new(
         (nodes, matrix, hold): (&'a Supernodes, &'a LowerColumns, f64),
         sequence: impl Iterator<Item = usize>,
         interrupt: &'a Interrupt,
     ) -> Result<Self> {
         let local = filled(nodes.order(), 0, WHAT)?;
-        let need = front::scratch();
+        let need = front::scratch::<T>();
         let workspace =
             MemBuffer::try_new(need).map_err(|_| refusal(need.unaligned_bytes_required(), WHAT))?;
         let updates = Updates::new(nodes, sequence, |s| update_len(nodes, s), WHAT)?;
@@ -163,7 +168,7 @@ impl<'a> Task<'a> {
     }
 
     /// Eliminates all supernodes of a subtree, with their panels; returns the update of its root.
-    fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [f64]) -> Result<Pivoted<Pages>> {
+    fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [T]) -> Result<Pivoted<Pages<T>>> {
         let first = self.nodes.first_value(subtree.start);
         for s in subtree.clone() {
             self.interrupt.check()?;
@@ -177,7 +182,7 @@ impl<'a> Task<'a> {
     }
 
     /// Eliminates the supernodes above all subtrees.
-    fn eliminate_shared(&mut self, range: Range<usize>, values: &mut [f64]) -> Result<Pivoted<()>> {
+    fn eliminate_shared(&mut self, range: Range<usize>, values: &mut [T]) -> Result<Pivoted<()>> {
         for s in range {
             self.interrupt.check()?;
             let node = self.nodes.node(s);
@@ -189,9 +194,9 @@ impl<'a> Task<'a> {
     }
 
     /// Factorises the panel of s and forms its update.
-    fn eliminate(&mut self, s: usize, panel: &mut [f64], shared: bool) -> Pivoted<()> {
+    fn eliminate(&mut self, s: usize, panel: &mut [T], shared: bool) -> Pivoted<()> {
         let node = self.nodes.node(s);
-        panel.fill(0.0);
+        panel.fill(T::of(0.0));
         self.scatter(&node, panel);
         let len = front::update_len(node.rows.len());
         let (update, children) = self.updates.open(s, len);
@@ -199,7 +204,7 @@ impl<'a> Task<'a> {
             let rows = RowMap::new(self.nodes.node(s).rows, node.end(), &self.local);
             Child { values, rows }
         };
-        let children: Vec<Child<'_>> = children.into_iter().map(child).collect();
+        let children: Vec<Child<'_, T>> = children.into_iter().map(child).collect();
         children.iter().for_each(|child| child.add_to_panel(panel, node.height()));
         front::factorize(panel, node.width, self.hold, &mut self.workspace, shared)
             .map_err(|at| node.begin + at)?;
@@ -212,26 +217,26 @@ impl<'a> Task<'a> {
     }
 
     /// Copies the entries of K in the columns of a supernode to its panel.
-    fn scatter(&mut self, node: &Node<'_>, panel: &mut [f64]) {
+    fn scatter(&mut self, node: &Node<'_>, panel: &mut [T]) {
         node.front_rows().enumerate().for_each(|(at, row)| self.local[row] = at as u32);
         let columns = node.begin..node.end();
         for (column, panel) in columns.zip(panel.chunks_exact_mut(node.height())) {
             let entries = self.matrix.ptr[column]..self.matrix.ptr[column + 1];
             for (&row, val) in self.matrix.row[entries.clone()].iter().zip(&self.matrix.val[entries]) {
-                panel[self.local[row as usize] as usize] += val;
+                panel[self.local[row as usize] as usize] += T::of(*val);
             }
         }
     }
 }
 
 /// The update of a child, in terms of its parent.
-struct Child<'a> {
-    values: &'a [f64],
+struct Child<'a, T> {
+    values: &'a [T],
     rows: RowMap,
 }
 
-impl Child<'_> {
-    fn add_to_panel(&self, panel: &mut [f64], height: usize) {
+impl<T: Entry> Child<'_, T> {
+    fn add_to_panel(&self, panel: &mut [T], height: usize) {
         for (j, &column) in self.rows.to[..self.rows.inside].iter().enumerate() {
             let column = column as usize * height;
             self.add_column(j, &mut panel[column..column + height], 0);
@@ -239,7 +244,7 @@ impl Child<'_> {
     }
 
     /// Adds it to a tile of the update of a parent with this number of columns.
-    fn add_to_tile(&self, tile: &mut Tile<'_>, width: usize) {
+    fn add_to_tile(&self, tile: &mut Tile<'_, T>, width: usize) {
         let place = |row: usize| self.rows.to.partition_point(|&to| (to as usize) < row);
         for j in place(width + tile.columns.start)..place(width + tile.columns.end) {
             let column = self.rows.to[j] as usize;
@@ -248,7 +253,7 @@ impl Child<'_> {
     }
 
     /// Adds column j to a column that starts at row `first` of the parent's front.
-    fn add_column(&self, j: usize, to: &mut [f64], first: usize) {
+    fn add_column(&self, j: usize, to: &mut [T], first: usize) {
         let order = self.rows.to.len();
         self.rows.add(j..order, &self.values[front::update_column(order, j)], to, first);
     }

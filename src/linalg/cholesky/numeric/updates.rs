@@ -5,29 +5,30 @@ use std::vec::IntoIter;
 
 use crate::error::Result;
 use crate::linalg::cholesky::analysis::supernodes::Supernodes;
+use crate::linalg::cholesky::numeric::Entry;
 use crate::platform::memory::reserved;
 use crate::platform::pages::Pages;
 
 /// Updates that are not used yet, in the order of their supernodes. A supernode finds the updates of its children on one
 /// stack and puts its own on the other: the stack depends on whether its level is even or odd, so that nothing is moved.
-pub struct Updates<'a> {
+pub struct Updates<'a, T: Entry> {
     nodes: &'a Supernodes,
-    waiting: Vec<(usize, KeptUpdate<'a>)>,
-    stacks: [Pages; 2],
+    waiting: Vec<(usize, KeptUpdate<'a, T>)>,
+    stacks: [Pages<T>; 2],
     tops: [usize; 2],
     /// Number of values that each stack still needs, for every further supernode.
     needs: IntoIter<[usize; 2]>,
 }
 
-enum KeptUpdate<'a> {
+enum KeptUpdate<'a, T: Entry> {
     Stack(Range<usize>),
     /// Formed by another task.
-    Apart(Pages),
+    Apart(Pages<T>),
     /// Kept from another factorisation.
-    Lent(&'a [f64]),
+    Lent(&'a [T]),
 }
 
-impl<'a> Updates<'a> {
+impl<'a, T: Entry> Updates<'a, T> {
     /// For supernodes in this sequence; supernode s has an update of `len(s)` values. `what`: its purpose, for errors.
     pub fn new(
         nodes: &'a Supernodes,
@@ -47,19 +48,19 @@ impl<'a> Updates<'a> {
     }
 
     /// Adds an update of another task for the parent of s.
-    pub fn push(&mut self, s: usize, update: Pages) {
+    pub fn push(&mut self, s: usize, update: Pages<T>) {
         self.waiting.push((s, KeptUpdate::Apart(update)));
     }
 
     /// Adds an update, kept from another factorisation, of a child of the next supernode, in the order of the children,
     /// so that sums do not depend on which updates are lent.
-    pub fn lend(&mut self, child: usize, update: &'a [f64]) {
+    pub fn lend(&mut self, child: usize, update: &'a [T]) {
         let before = self.waiting.iter().rposition(|(other, _)| *other < child);
         self.waiting.insert(before.map_or(0, |at| at + 1), (child, KeptUpdate::Lent(update)));
     }
 
     /// The last update on the stacks.
-    pub fn last(&self) -> &[f64] {
+    pub fn last(&self) -> &[T] {
         match self.waiting.last() {
             Some((s, KeptUpdate::Stack(range))) => &self.stacks[self.nodes.level(*s) % 2][range.clone()],
             Some((_, KeptUpdate::Apart(values))) => values,
@@ -69,7 +70,7 @@ impl<'a> Updates<'a> {
     }
 
     /// Room for the update of s, the next of the sequence, and the children of s with their updates.
-    pub fn open(&mut self, s: usize, len: usize) -> (&mut [f64], Vec<(usize, &[f64])>) {
+    pub fn open(&mut self, s: usize, len: usize) -> (&mut [T], Vec<(usize, &[T])>) {
         for (stack, need) in self.stacks.iter_mut().zip(self.needs.next().into_iter().flatten()) {
             stack.truncate(need);
         }
@@ -100,7 +101,7 @@ impl<'a> Updates<'a> {
     }
 
     /// The update of the root of a subtree, which is the last one.
-    pub fn into_last(self, root: usize) -> Pages {
+    pub fn into_last(self, root: usize) -> Pages<T> {
         let [even, odd] = self.stacks;
         let level = self.nodes.level(root) % 2;
         let mut update = if level == 0 { even } else { odd };
@@ -176,7 +177,7 @@ impl RowMap {
     }
 
     /// Adds values of the child's rows `rows` to a column that starts at row `first` of the parent's front.
-    pub fn add(&self, rows: Range<usize>, from: &[f64], to: &mut [f64], first: usize) {
+    pub fn add<T: Entry>(&self, rows: Range<usize>, from: &[T], to: &mut [T], first: usize) {
         let run = self.runs.partition_point(|run| run.end <= rows.start);
         for run in &self.runs[run..] {
             let (begin, end) = (run.start.max(rows.start), run.end.min(rows.end));
@@ -212,7 +213,7 @@ mod tests {
         let len = |s: usize| 100 * nodes.node(s).rows.len();
         let children = |s: usize| (0..s).filter(move |&child| nodes.parent(child) == s);
         let mut updates = Updates::new(nodes, 0..nodes.count(), len, "a test").unwrap();
-        let room = |updates: &Updates<'_>| updates.stacks.iter().map(|stack| stack.len()).sum::<usize>();
+        let room = |updates: &Updates<'_, f64>| updates.stacks.iter().map(|stack| stack.len()).sum::<usize>();
         let first = room(&updates);
         for s in 0..nodes.count() {
             let (own, waiting) = updates.open(s, len(s));

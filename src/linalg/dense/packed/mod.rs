@@ -109,7 +109,7 @@ impl Packed {
 
     /// `A_ij += gram_kl` for i = `indices[k]`, j = `indices[l]`, k >= l: n ascending `indices`, `gram` n x n by columns,
     /// of which the lower triangle is read.
-    pub fn add_lower(&mut self, indices: &[usize], gram: &[f64]) {
+    pub fn add_lower<T: Copy + Into<f64>>(&mut self, indices: &[usize], gram: &[T]) {
         let (n, pad) = (indices.len(), padded(self.order, 0));
         let mut start = 0;
         for columns in indices.chunk_by(|a, b| (pad + a) / SIDE == (pad + b) / SIDE) {
@@ -120,15 +120,21 @@ impl Packed {
 
     /// The first `width` columns of `add_lower`, all within one column of tiles; `stride`: distance of the columns of
     /// `gram`.
-    fn add_columns(&mut self, indices: &[usize], width: usize, gram: &[f64], stride: usize) {
+    fn add_columns<T: Copy + Into<f64>>(
+        &mut self,
+        indices: &[usize],
+        width: usize,
+        gram: &[T],
+        stride: usize,
+    ) {
         let (own, below) = indices.split_at(width);
         for (l, &j) in own.iter().enumerate() {
-            (l..width).for_each(|k| self.add(indices[k], j, gram[l * stride + k]));
+            (l..width).for_each(|k| self.add(indices[k], j, gram[l * stride + k].into()));
         }
         let (pad, mut start) = (padded(self.order, 0), width);
         for rows in below.chunk_by(|a, b| (pad + a) / SIDE == (pad + b) / SIDE) {
             for (l, &j) in own.iter().enumerate() {
-                let gram = rows.iter().zip(&gram[l * stride + start..]);
+                let gram = rows.iter().zip(gram[l * stride + start..].iter().map(|v| (*v).into()));
                 match &mut self.lower {
                     Lower::Rows(entries) => gram.for_each(|(&i, v)| entries[row(i) + j] += v),
                     Lower::Tiles(tiles) => {

@@ -139,6 +139,7 @@ fn a_cut_ends_when_the_call_has_to() {
 
 #[test]
 fn small_bodies_stay_whole() {
-    assert_eq!(pieces_for(39_999), 1);
-    assert_eq!([40_000, 300_000].map(pieces_for), [27, 216]);
+    assert_eq!([(39_999, 0), (119_999, 3)].map(|(unknowns, solves)| pieces_for(unknowns, solves)), [1, 1]);
+    assert_eq!([40_000, 300_000].map(|unknowns| pieces_for(unknowns, 1)), [27, 216]);
+    assert_eq!(pieces_for(300_000, 7), 216);
 }
