@@ -9,7 +9,7 @@ const COUNTS: [&str; 8] =
     ["dofs", "pieces", "rows", "closed", "products", "implicit", "second_products", "entries"];
 
 /// Medians in seconds.
-const TIMES: [(Program, &str); 39] = [
+const TIMES: [(Program, &str); 43] = [
     (Program::Cut(1), "hand_over_cpu"),
     (Program::Cut(1), "cut_cpu"),
     (Program::Cut(1), "first_cpu"),
