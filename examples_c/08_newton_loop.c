@@ -25,6 +25,7 @@
 #include <string.h>
 
 #include "demo.h"
+#include "picture.h"
 
 enum { NX = 24, NY = 4, LINE = NY + 1, NODES = (NX - 1) * LINE, N = 2 * NODES, ROWS = NX - 1, MOST = 8 };
 static const double EA = 1000.0 /* N */, RADIUS = 10.0 /* mm */, DEPTH = 8.0 /* mm */, LEAST = 0.01 /* mm */;
@@ -289,8 +290,30 @@ static double unbalanced(matrix *k, const double *u, const double *lambda, const
     return fmax(largest(internal) / size, inside / RADIUS);
 }
 
-/* Presses the strip to a depth by load steps, halved where one fails; prints a line for each. What is left unbalanced. */
-static double press(feti_problem *problem, matrix *k, double to, friction *rub, feti_info *info, double *force, int *right)
+/* A step of the film: the cells of the lattice with its clamped ends, and what the die does to the top. */
+static void draw(const char *folder, int step, const double *u, const double *lambda, double depth)
+{
+    enum { ALL = (NX + 1) * LINE, CELLS = NX * NY };
+    double x[2 * ALL], moved[2 * ALL] = { 0.0 }, force[2 * ALL] = { 0.0 }, push[ALL] = { 0.0 }, gap[ALL], state[ALL], n[2];
+    int32_t corner[4 * CELLS], *next = corner;
+    const picture_plane plane = { ALL, CELLS, CELLS, corner, x, moved, force, push, gap, state, 0.0, 0.0 };
+
+    for (int a = 0; a < ALL; a++) {
+        const int i = a / LINE, j = a % LINE, node = node_at(i, j);
+        x[2 * a] = i, x[2 * a + 1] = j, gap[a] = NAN, state[a] = -1.0;
+        if (i < NX && j < NY) *next++ = a, *next++ = a + LINE, *next++ = a + LINE + 1, *next++ = a + 1;
+        if (node < 0) continue;
+        for (int d = 0; d < 2; d++) moved[2 * a + d] = u[2 * node + d];
+        if (j < NY) continue;
+        gap[a] = from_axis(u, depth, i, n) - RADIUS, push[a] = lambda[i - 1], state[a] = push[a] > 0.0;
+        for (int d = 0; d < 2; d++) force[2 * a + d] = push[a] * n[d];
+    }
+    if (picture_step(folder, "newton_loop", step, &plane) != 0) demo_stop("the picture cannot be written");
+}
+
+/* Presses the strip to a depth by load steps, halved where one fails; prints a line for each, and draws it where there is a folder. What is left unbalanced. */
+static double press(feti_problem *problem, matrix *k, double to, friction *rub, const char *folder, feti_info *info, double *force,
+                    int *right)
 {
     double u[N] = { 0.0 }, lambda[ROWS] = { 0.0 }, saved_u[N], saved_lambda[ROWS], depth = 0.0, step = to;
     int steps = 0, rejected = 0, quadratic;
@@ -312,7 +335,9 @@ static double press(feti_problem *problem, matrix *k, double to, friction *rub, 
         saved_rub = *rub;
         status = newton(problem, k, depth + step, u, lambda, rub, &sum, info, &quadratic);
         if (status == FETI_OK) {
-            depth += step, steps++;
+            depth += step;
+            if (folder) draw(folder, steps, u, lambda, depth);
+            steps++;
             *right = *right && quadratic && sum.factorisations == sum.iterations && sum.analyses == 0;
             unbalanced(k, u, lambda, rub, depth, force);
             printf("step to %.4f mm: %d iterations, %d factorisations, %d analyses, force %.4f N\n", depth, sum.iterations,
@@ -327,13 +352,14 @@ static double press(feti_problem *problem, matrix *k, double to, friction *rub, 
         }
         CALL(feti_state_drop(problem, state));
     }
+    if (folder && picture_pvd(folder, "newton_loop", steps) != 0) demo_stop("the film cannot be written");
     demo_value("load steps", steps, "-");
     demo_value("rejected load steps", rejected, "-");
     *right = *right && depth == to;
     return unbalanced(k, u, lambda, rub, depth, force);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     static matrix k;
     double u[N] = { 0.0 }, f[N], force, error;
@@ -357,10 +383,10 @@ int main(void)
     demo_value("  analyses", sum.analyses, "-");
     right = right && sum.factorisations == 1 && sum.analyses == 1;
 
-    error = press(problem, &k, DEPTH, &none, &info, &force, &right);
+    error = press(problem, &k, DEPTH, &none, demo_picture_folder(argc, argv), &info, &force, &right);
     demo_value("force on the die", force, "N");
     printf("with friction: iteration, |d| / mm, nodes that stick, that slip\n");
-    error = fmax(error, press(problem, &k, LESS, &rub, &info, &force, &right));
+    error = fmax(error, press(problem, &k, LESS, &rub, NULL, &info, &force, &right));
     demo_value("force on the die", force, "N");
     demo_value("nodes that stick", (double)info.sticking, "-");
     demo_value("nodes that slip", (double)info.slipping, "-");

@@ -322,7 +322,7 @@ int main(int argc, char **argv)
     const double unit = MU * c.p0 / (0.5 * c.modulus); /* mm: mu p0 / E* */
     feti_problem *problem = NULL;
     feti_info info = { .struct_size = sizeof info };
-    double sums = 0.0, time[STEPS];
+    double sums = 0.0;
     int right = 1;
 
     CALL(feti_problem_create(&problem));
@@ -352,8 +352,8 @@ int main(int argc, char **argv)
         printf("%10.2f%22.6f%14.6f%14.6f\n", PART[step], found[step].missed, 1e3 * found[step].shift, 1e3 * unit * shift(step));
         right = right && found[step].missed <= 5e-3 && fabs(found[step].shift - unit * shift(step)) <= 1e-4 * unit;
     }
-    for (int step = 0; step < STEPS; step++) time[step] = step, draw_step(demo_picture_folder(argc, argv), &c, step, &found[step]);
-    if (picture_pvd(demo_picture_folder(argc, argv), "cattaneo_mindlin", STEPS, time)) demo_stop("the picture cannot be written");
+    for (int step = 0; step < STEPS; step++) draw_step(demo_picture_folder(argc, argv), &c, step, &found[step]);
+    if (picture_pvd(demo_picture_folder(argc, argv), "cattaneo_mindlin", STEPS)) demo_stop("the picture cannot be written");
     draw_shear(demo_picture_folder(argc, argv), &c, found);
     draw_loop(demo_picture_folder(argc, argv), unit, found);
     return demo_line("12_cattaneo_mindlin", &info, sums, right && fabs(found[0].pressed - HALF) <= c.cell);

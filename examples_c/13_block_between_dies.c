@@ -27,6 +27,7 @@
 #include <string.h>
 
 #include "demo.h"
+#include "picture.h"
 
 enum { NX = 24, NY = 8, LINE = NY + 1, NODES = (NX + 1) * LINE, N = 2 * NODES, SIDE = NX + 1, ROWS = 2 * SIDE, MOST = 6 };
 static const double YOUNG = 1000.0, POISSON = 0.3;              /* MPa, -; plane strain, 1 mm thick */
@@ -277,6 +278,27 @@ static double unbalanced(matrix *k, const double *u, const double *lambda, const
     return fmax(largest(internal) / size, inside / HEIGHT);
 }
 
+/* A step of the film: the block, and what the dies do to its top and its bottom. */
+static void draw(const char *folder, int step, const double *u, const double *lambda, const place *at)
+{
+    const double shear = YOUNG / (2.0 * (1.0 + POISSON)), lame = 2.0 * shear * POISSON / (1.0 - 2.0 * POISSON);
+    double x[N], force[N] = { 0.0 }, push[NODES] = { 0.0 }, gap[NODES], state[NODES], n[2];
+    int32_t corner[4 * NX * NY], *next = corner;
+    const picture_plane plane = { NODES, NX * NY, NX * NY, corner, x, u, force, push, gap, state, shear, lame };
+
+    positions(NULL, x);
+    for (int a = 0; a < NODES; a++) {
+        gap[a] = NAN, state[a] = -1.0;
+        if (a / LINE < NX && a % LINE < NY) *next++ = a, *next++ = a + LINE, *next++ = a + LINE + 1, *next++ = a + 1;
+    }
+    for (int r = 0; r < ROWS; r++) {
+        const int a = node_of(r);
+        gap[a] = from_axis(u, at, r, n) - RADIUS[r / SIDE], push[a] = lambda[r], state[a] = push[a] > 0.0;
+        for (int d = 0; d < 2; d++) force[2 * a + d] = push[a] * n[d];
+    }
+    if (picture_step(folder, "block_between_dies", step, &plane) != 0) demo_stop("the picture cannot be written");
+}
+
 /* What load steps took. */
 typedef struct {
     int steps, rejected, most, quadratic;
@@ -321,8 +343,8 @@ static int32_t newton(feti_problem *problem, matrix *k, const surfaces *sides, c
 }
 
 /* A stage: the dies go from a place to another by load steps, halved where one fails. Returns 1 when they are there. */
-static int go(feti_problem *problem, matrix *k, const surfaces *sides, place from, place to, double *u, double *lambda,
-              feti_info *info, tally *sum)
+static int go(feti_problem *problem, matrix *k, const surfaces *sides, place from, place to, const char *folder, double *u,
+              double *lambda, feti_info *info, tally *sum)
 {
     double done = 0.0, step = 1.0, saved_u[N], saved_lambda[ROWS];
 
@@ -335,6 +357,7 @@ static int go(feti_problem *problem, matrix *k, const surfaces *sides, place fro
         printf("depth %.4f mm, angle %7.4f degrees\n", at.depth, at.angle);
         printf("           |d| / mm  unbalanced closed  status\n");
         if (newton(problem, k, sides, &at, u, lambda, info, &iterations, &quadratic) == FETI_OK) {
+            draw(folder, sum->steps, u, lambda, &at);
             done += step, sum->steps++;
             sum->most = iterations > sum->most ? iterations : sum->most;
             sum->quadratic = sum->quadratic && quadratic;
@@ -362,8 +385,9 @@ static double not_turned(const double *u, const double *pressed, double angle)
     return worst / WIDTH;
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    const char *folder = demo_picture_folder(argc, argv);
     static matrix k;
     const place start = { 0.0, 0.0 }, closed = { DEPTH, 0.0 }, turned = { DEPTH, TURN };
     double u[N] = { 0.0 }, pressed[N], lambda[ROWS] = { 0.0 }, before[ROWS], force[2][2], error, size, axis[2], length;
@@ -380,10 +404,10 @@ int main(void)
     CALL(feti_body_add(problem, N, &body));
     CALL(feti_body_stiffness_i32(problem, body, N, k.ptr, k.col, k.val, 0, FETI_LOWER, FETI_COPY));
     add_surfaces(problem, body, &start, &sides);
-    right = go(problem, &k, &sides, start, closed, u, lambda, &info, &sum);
+    right = go(problem, &k, &sides, start, closed, folder, u, lambda, &info, &sum);
     memcpy(pressed, u, sizeof u);
     memcpy(before, lambda, sizeof lambda);
-    right = right && go(problem, &k, &sides, closed, turned, u, lambda, &info, &sum);
+    right = right && go(problem, &k, &sides, closed, turned, folder, u, lambda, &info, &sum);
     CALL(feti_problem_destroy(&problem));
 
     error = unbalanced(&k, u, lambda, &turned, force);
@@ -393,6 +417,7 @@ int main(void)
     length = hypot(axis[0], axis[1]);
     error = fmax(error, hypot(force[0][0] / size + axis[0] / length, force[0][1] / size + axis[1] / length));
     error = fmax(error, fmax(not_turned(u, pressed, TURN), demo_error(ROWS, lambda, before)));
+    if (picture_pvd(folder, "block_between_dies", sum.steps) != 0) demo_stop("the film cannot be written");
     demo_value("load steps", sum.steps, "-");
     demo_value("rejected load steps", sum.rejected, "-");
     demo_value("most iterations of a load step", sum.most, "-");

@@ -180,7 +180,7 @@ static void draw(const char *folder, const numbers *all, const answer *found)
     int64_t *cells = demo_array(9 * ELEMENTS + 1, sizeof *cells), *offset = cells, *corner = cells + ELEMENTS + 1;
     int32_t *types = demo_array(2 * ELEMENTS, sizeof *types), *type = types, *body = types + ELEMENTS;
     const picture_grid grid = { NODES, ELEMENTS, xyz, offset, corner, type, body };
-    const picture_answer answer = { moved, force, push, gap, state, piece, YOUNG / (2.0 * (1.0 + POISSON)) };
+    const picture_answer answer = { moved, force, push, gap, state, piece, YOUNG / (2.0 * (1.0 + POISSON)), 0.0, 0 };
 
     for (int a = 0; a < NODES; a++) {
         const int place[3] = { a % L, a / L % L, a / L / L };

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "demo.h"
+#include "picture.h"
 
 enum { BELOW_X = 40, BELOW_Y = 5, ABOVE_X = 16, ABOVE_Y = 8, BELOW = (BELOW_X + 1) * (BELOW_Y + 1), ABOVE = (ABOVE_X + 1) * (ABOVE_Y + 1),
        NODES = BELOW + ABOVE, N = 2 * NODES, ELEMENTS = BELOW_X * BELOW_Y + ABOVE_X * ABOVE_Y, FOOT = ABOVE_X + 1, STEPS = 7, MOST = 20 };
@@ -31,7 +32,7 @@ typedef struct {
 
 /* Of contact, by node; `state`: 0 open, 2 sticks, 3 slips. */
 typedef struct {
-    double pressure[NODES], shear[N], state[NODES]; /* MPa */
+    double pressure[NODES], shear[N], force[NODES], gap[NODES], state[NODES]; /* MPa, N, mm */
     feti_pair_facts facts;
 } results;
 
@@ -186,6 +187,8 @@ static void get_results(contact *c, const double *now, results *r)
     move_to(c, now);
     CALL(feti_pair_field(c->problem, c->pair, FETI_PRESSURE, NODES, r->pressure));
     CALL(feti_pair_field(c->problem, c->pair, FETI_SHEAR, N, r->shear));
+    CALL(feti_pair_field(c->problem, c->pair, FETI_FORCE, NODES, r->force));
+    CALL(feti_pair_field(c->problem, c->pair, FETI_GAP, NODES, r->gap));
     CALL(feti_pair_field(c->problem, c->pair, FETI_CLOSED, NODES, r->state));
     CALL(feti_pair_info(c->problem, c->pair, &r->facts));
 }
@@ -196,6 +199,20 @@ static void end_contact(contact *c)
 }
 /* ---- End of contact. ---- */
 
+/* A step of the film. Where nothing is held, internal forces balance those of contact. */
+static void draw(const char *folder, int step, const mesh *m, const double *now, const double *internal, results *r)
+{
+    const double shear = YOUNG / (2.0 * (1.0 + POISSON)), lame = 2.0 * shear * POISSON / (1.0 - 2.0 * POISSON);
+    double u[N], force[N];
+    const picture_plane plane = { NODES, ELEMENTS, BELOW_X * BELOW_Y, m->corner, m->x, u, force, r->force, r->gap, r->state, shear, lame };
+
+    for (int i = 0; i < N; i++) {
+        u[i] = now[i] - m->x[i], force[i] = m->number[i] < 0 ? 0.0 : internal[i];
+        if (i / 2 < BELOW || i / 2 >= BELOW + FOOT) r->gap[i / 2] = NAN, r->state[i / 2] = -1.0;
+    }
+    if (picture_step(folder, "sliding_blocks", step, &plane) != 0) demo_stop("the picture cannot be written");
+}
+
 /* Where the top of the upper block is to go in a step: down in the first, then along. */
 static double goal_of(int step, int i)
 {
@@ -203,8 +220,9 @@ static double goal_of(int step, int i)
     return i % 2 ? -DEPTH : SLIDE * step / (STEPS - 1);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    const char *folder = demo_picture_folder(argc, argv);
     static mesh m;
     static double ke[64 * ELEMENTS];
     static results r = { .facts.struct_size = sizeof r.facts };
@@ -229,12 +247,14 @@ int main(void)
         }
         longest = iterations > longest ? iterations : longest;
         get_results(&c, now, &r);
+        assemble(&m, now, left, ke, internal, load);
+        draw(folder, step, &m, now, internal, &r);
         printf("step %d: %2d iterations, %2d nodes touch, %2d slip, force on the foot %11.6f N up, %11.6f N along\n", step, iterations,
                (int)r.facts.closed, (int)r.facts.slipping, r.facts.force[1], r.facts.force[0]);
     }
     end_contact(&c);
+    if (picture_pvd(folder, "sliding_blocks", STEPS) != 0) demo_stop("the film cannot be written");
 
-    assemble(&m, now, left, ke, internal, load);
     for (int i = 0; i <= ABOVE_X; i++)
         for (int dir = 0; dir < 2; dir++) held[dir] += internal[2 * node_at(BELOW, ABOVE_X, i, ABOVE_Y) + dir];
     error = hypot(held[0] + r.facts.force[0], held[1] + r.facts.force[1]) / hypot(held[0], held[1]);

@@ -42,21 +42,34 @@ typedef struct {
    "picture folder/name". Returns 0, or -1 on failure. */
 int picture_vtu(const char *folder, const char *name, const picture_grid *grid, int fields, const picture_field *field);
 
-/* Writes folder/stem.pvd, which ParaView opens as a film of stem_0.vtu, stem_1.vtu, .. at the given times. */
-int picture_pvd(const char *folder, const char *stem, int steps, const double *time);
+/* Writes folder/stem.pvd, which ParaView opens as a film of stem_0.vtu, stem_1.vtu, .. at the times 0, 1, .. */
+int picture_pvd(const char *folder, const char *stem, int steps);
 
 /* What a solve has come to, for all bodies. */
 typedef struct {
     const double *u, *force;          /* 3 x nodes: displacement, length; contact force */
     const double *push, *gap, *state; /* nodes: force and gap of the row at the node, FETI_ROW_OPEN, ..; -1, NaN without a row */
     const double *piece;              /* cells: the piece of a body that is cut; NULL: no body is */
-    double shear_modulus;
+    double shear_modulus, lame;       /* shear_modulus 0: no stress is written */
+    int large;                        /* 1: large displacements of St. Venant and Kirchhoff's material; areas are those of displaced faces */
 } picture_answer;
 
 /* Writes elements and, as cells of their own, those of their faces that may touch, all of whose nodes have a row. Numbers of
    cells: body, piece, von Mises stress of elements, contact pressure of faces; of nodes: displacement, contact_force, gap, contact
    (the state of the row). */
 int picture_mesh(const char *folder, const char *name, const picture_grid *elements, const picture_answer *answer);
+
+/* Quadrilaterals in the plane with large displacements. */
+typedef struct {
+    int64_t nodes, cells, first;      /* the first cells are body 1, the others body 2 */
+    const int32_t *corner;            /* 4 x cells, nodes from 0 */
+    const double *x, *u, *force;      /* 2 x nodes: at rest, displacement, length; contact force */
+    const double *push, *gap, *state; /* nodes */
+    double shear_modulus, lame;
+} picture_plane;
+
+/* The same for a step of a film: folder/stem_step.vtu. */
+int picture_step(const char *folder, const char *stem, int step, const picture_plane *plane);
 
 /* The same from a case with its rows: u and contact force by unknowns; lambda (force), slack (gap, length) and state of every row. */
 int picture_case(const char *folder, const char *name, const case_data *data, double shear_modulus, const double *u,

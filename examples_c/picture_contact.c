@@ -80,7 +80,7 @@ int picture_case(const char *folder, const char *name, const case_data *data, do
     if (values && numbers) {
         double *xyz = values, *moved = values + 3 * nodes, *pushed = values + 6 * nodes;
         double *push = values + 9 * nodes, *gap = values + 10 * nodes, *of_row = values + 11 * nodes;
-        const picture_answer answer = { moved, pushed, push, gap, of_row, NULL, shear_modulus };
+        const picture_answer answer = { moved, pushed, push, gap, of_row, NULL, shear_modulus, 0.0, 0 };
         const picture_grid grid = elements_of(data, dims, numbers, xyz);
 
         for (int64_t i = 0; i < nodes; i++) {

@@ -69,10 +69,35 @@ static void divide(double a[3][3], double b[3][3])
     }
 }
 
-/* Von Mises stress in the middle of an element, sqrt(3/2 s : s), of the deviator s = 2 G dev(strain); plane strain in the plane. */
+/* Cauchy's stress F S F'/det F of St. Venant and Kirchhoff's material, from the gradient of u: F = I + grad u, Green's strain E = (F'F - I)/2,
+   S = lame tr(E) I + 2 G E. */
+static void cauchy(double grad[3][3], const picture_answer *answer, double stress[3][3])
+{
+    double F[3][3], S[3][3], trace = 0.0, det = 0.0;
+
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) F[i][j] = (i == j) + grad[i][j];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            S[i][j] = answer->shear_modulus * (F[0][i] * F[0][j] + F[1][i] * F[1][j] + F[2][i] * F[2][j] - (i == j));
+            if (i == j) trace += S[i][j] / (2.0 * answer->shear_modulus);
+        }
+    for (int i = 0; i < 3; i++) {
+        const int p = (i + 1) % 3, q = (i + 2) % 3;
+        S[i][i] += answer->lame * trace, det += F[0][i] * (F[1][p] * F[2][q] - F[1][q] * F[2][p]);
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            stress[i][j] = 0.0;
+            for (int k = 0; k < 9; k++) stress[i][j] += F[i][k / 3] * S[k / 3][k % 3] * F[j][k % 3] / det;
+        }
+}
+
+/* Von Mises stress in the middle of an element, sqrt(3/2 s : s), of the deviator s of the stress, 2 G strain where displacements are small;
+   plane strain in the plane. */
 static double von_mises(const picture_grid *grid, int64_t cell, const picture_answer *answer)
 {
-    double place[3][3] = { { 0.0 } }, moved[3][3] = { { 0.0 } }, sum = 0.0;
+    double place[3][3] = { { 0.0 } }, moved[3][3] = { { 0.0 } }, stress[3][3], sum = 0.0;
 
     for (int64_t k = grid->offset[cell]; k < grid->offset[cell + 1]; k++) {
         const int64_t node = grid->corner[k];
@@ -86,28 +111,31 @@ static double von_mises(const picture_grid *grid, int64_t cell, const picture_an
     }
     if (grid->type[cell] == PICTURE_QUAD) place[2][2] = 1.0;
     divide(moved, place); /* the gradient of u */
-    const double mean = (moved[0][0] + moved[1][1] + moved[2][2]) / 3.0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            const double s = answer->shear_modulus * (moved[i][j] + moved[j][i] - (i == j ? 2.0 * mean : 0.0));
-            sum += 1.5 * s * s;
-        }
+    if (answer->large) cauchy(moved, answer, stress);
+    for (int k = 0; k < 9 && !answer->large; k++)
+        stress[k / 3][k % 3] = answer->shear_modulus * (moved[k / 3][k % 3] + moved[k % 3][k / 3]);
+    const double mean = (stress[0][0] + stress[1][1] + stress[2][2]) / 3.0;
+    for (int k = 0; k < 9; k++) {
+        const double s = stress[k / 3][k % 3] - (k / 3 == k % 3 ? mean : 0.0);
+        sum += 1.5 * s * s;
+    }
     return sqrt(sum);
 }
 
-/* Length (times thickness 1) or area of a face with plane corners. */
-static double area_of(const picture_grid *grid, int64_t face, int32_t corners)
+/* Length (times thickness 1) or area of a face with plane corners; `u`: displaced, NULL: at rest. */
+static double area_of(const picture_grid *grid, const double *u, int64_t face, int32_t corners)
 {
     const int64_t *node = grid->corner + grid->offset[face];
-    double a[3], b[3], square = 0.0;
+    const int to[2] = { corners == 4 ? 2 : 1, corners - 1 }, from[2] = { 0, corners == 4 ? 1 : 0 }; /* the diagonals of a quadrilateral */
+    double a[2][3], square = 0.0;
 
-    for (int k = 0; k < 3; k++) {
-        a[k] = grid->xyz[3 * node[corners == 4 ? 2 : 1] + k] - grid->xyz[3 * node[0] + k];
-        b[k] = corners == 2 ? 0.0 : grid->xyz[3 * node[corners - 1] + k] - grid->xyz[3 * node[corners == 4 ? 1 : 0] + k];
+    for (int k = 0; k < 6; k++) {
+        const int64_t end = 3 * node[to[k / 3]] + k % 3, begin = 3 * node[from[k / 3]] + k % 3;
+        a[k / 3][k % 3] = grid->xyz[end] - grid->xyz[begin] + (u ? u[end] - u[begin] : 0.0);
     }
     for (int k = 0; k < 3; k++) {
         const int p = (k + 1) % 3, q = (k + 2) % 3;
-        const double part = corners == 2 ? a[k] : (a[p] * b[q] - a[q] * b[p]) / 2.0;
+        const double part = corners == 2 ? a[0][k] : (a[0][p] * a[1][q] - a[0][q] * a[1][p]) / 2.0;
         square += part * part;
     }
     return sqrt(square);
@@ -158,18 +186,18 @@ static int32_t face_corners(int32_t type)
 }
 
 /* Pressure of every face behind the elements: its nodes share their forces among their faces by the area of these. NaN elsewhere. */
-static void pressures(const picture_grid *grid, int64_t elements, const double *push, double *around, double *pressure)
+static void pressures(const picture_grid *grid, int64_t elements, const picture_answer *answer, double *around, double *pressure)
 {
     for (int64_t i = 0; i < grid->nodes; i++) around[i] = 0.0;
     for (int64_t c = 0; c < grid->cells; c++) {
         pressure[c] = NAN;
         for (int64_t k = grid->offset[c]; c >= elements && k < grid->offset[c + 1]; k++)
-            around[grid->corner[k]] += area_of(grid, c, face_corners(grid->type[c]));
+            around[grid->corner[k]] += area_of(grid, answer->large ? answer->u : NULL, c, face_corners(grid->type[c]));
     }
     for (int64_t c = elements; c < grid->cells; c++) {
         pressure[c] = 0.0;
         for (int64_t k = grid->offset[c]; k < grid->offset[c + 1]; k++)
-            pressure[c] += push[grid->corner[k]] / around[grid->corner[k]];
+            pressure[c] += answer->push[grid->corner[k]] / around[grid->corner[k]];
     }
 }
 
@@ -182,21 +210,50 @@ int picture_mesh(const char *folder, const char *name, const picture_grid *eleme
 
     if (status == 0 && values) {
         double *stress = values, *pressure = values + cells, *piece = values + 2 * cells, *around = values + 3 * cells;
-        const picture_field field[] = { { "displacement", 0, 3, 0, answer->u }, { "contact_force", 0, 3, 0, answer->force },
-                                        { "gap", 0, 1, 0, answer->gap }, { "contact", 0, 1, 1, answer->state },
-                                        { "von_mises", 1, 1, 0, stress }, { "pressure", 1, 1, 0, pressure },
-                                        { "piece", 1, 1, 1, piece } };
+        picture_field field[7] = { { "displacement", 0, 3, 0, answer->u }, { "contact_force", 0, 3, 0, answer->force },
+                                   { "gap", 0, 1, 0, answer->gap }, { "contact", 0, 1, 1, answer->state },
+                                   { "pressure", 1, 1, 0, pressure } };
+        const picture_field of_stress = { "von_mises", 1, 1, 0, stress }, of_piece = { "piece", 1, 1, 1, piece };
+        int fields = 5;
+        if (answer->shear_modulus > 0.0) field[fields++] = of_stress;
+        if (answer->piece) field[fields++] = of_piece;
         for (int64_t c = 0; c < cells; c++) {
-            stress[c] = c < elements->cells ? von_mises(elements, c, answer) : NAN;
+            stress[c] = c < elements->cells && answer->shear_modulus > 0.0 ? von_mises(elements, c, answer) : NAN;
             piece[c] = answer->piece && c < elements->cells ? answer->piece[c] : -1.0;
         }
-        pressures(&all.grid, elements->cells, answer->push, around, pressure);
-        status = picture_vtu(folder, name, &all.grid, answer->piece ? 7 : 6, field);
+        pressures(&all.grid, elements->cells, answer, around, pressure);
+        status = picture_vtu(folder, name, &all.grid, fields, field);
     } else {
         status = -1;
     }
     free(values);
     free(all.numbers);
     free(all.types);
+    return status;
+}
+
+int picture_step(const char *folder, const char *stem, int step, const picture_plane *plane)
+{
+    const int64_t nodes = plane->nodes, cells = plane->cells;
+    double *values = calloc((size_t)(9 * nodes), sizeof *values), *xyz = values, *u = values + 3 * nodes, *force = values + 6 * nodes;
+    int64_t *numbers = malloc((size_t)(5 * cells + 1) * sizeof *numbers), *offset = numbers, *corner = numbers + cells + 1;
+    int32_t *types = malloc((size_t)(2 * cells) * sizeof *types), *type = types, *body = types + cells;
+    int status = -1;
+
+    if (values && numbers && types) {
+        const picture_grid grid = { nodes, cells, xyz, offset, corner, type, body };
+        const picture_answer answer = { u, force, plane->push, plane->gap, plane->state, NULL, plane->shear_modulus, plane->lame, 1 };
+        char name[64];
+        for (int64_t i = 0; i < 2 * nodes; i++) {
+            const int64_t at = i / 2 * 3 + i % 2;
+            xyz[at] = plane->x[i], u[at] = plane->u[i], force[at] = plane->force[i];
+        }
+        for (int64_t c = 0; c <= cells; c++) offset[c] = 4 * c;
+        for (int64_t c = 0; c < cells; c++) type[c] = PICTURE_QUAD, body[c] = c < plane->first ? 1 : 2;
+        for (int64_t k = 0; k < 4 * cells; k++) corner[k] = plane->corner[k];
+        snprintf(name, sizeof name, "%s_%d.vtu", stem, step);
+        status = picture_mesh(folder, name, &grid, &answer);
+    }
+    free(values), free(numbers), free(types);
     return status;
 }

@@ -78,14 +78,14 @@ int picture_vtu(const char *folder, const char *name, const picture_grid *grid, 
     return fclose(file) == 0 ? 0 : -1;
 }
 
-int picture_pvd(const char *folder, const char *stem, int steps, const double *time)
+int picture_pvd(const char *folder, const char *stem, int steps)
 {
     FILE *file = begin(folder, stem, ".pvd");
 
     if (!file) return -1;
     fprintf(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
     for (int step = 0; step < steps; step++)
-        fprintf(file, "<DataSet timestep=\"%g\" file=\"%s_%d.vtu\"/>\n", time[step], stem, step);
+        fprintf(file, "<DataSet timestep=\"%d\" file=\"%s_%d.vtu\"/>\n", step, stem, step);
     fprintf(file, "</Collection>\n</VTKFile>\n");
     return fclose(file) == 0 ? 0 : -1;
 }

@@ -22,6 +22,7 @@
 program newton_loop
   use demo
   use feti_contact
+  use vtu_picture, only: nan_of, picture_pvd, picture_step
   implicit none
   integer, parameter :: dp = kind(1.0d0)
   integer, parameter :: nx = 24, ny = 4, nodes = (nx - 1) * (ny + 1), n = 2 * nodes, rows = nx - 1, most = 8
@@ -96,8 +97,41 @@ contains
     end do
   end subroutine
 
-  !> Presses the strip to a depth by load steps, halved where one fails; prints a line for each. Force on the die, and what is left
-  !> unbalanced.
+  !> A step of the film: the cells of the lattice with its clamped ends, and what the die does to the top.
+  subroutine draw(step)
+    integer, intent(in) :: step
+    integer, parameter :: all = (nx + 1) * (ny + 1)
+    real(dp) :: x(2, all), moved(2, all), forces(2, all), push(all), gap(all), r, normal(2)
+    integer :: corner(4, nx * ny), state(all), i, j, a, node
+
+    moved = 0
+    forces = 0
+    push = 0
+    gap = nan_of()
+    state = -1
+    do i = 0, nx
+      do j = 0, ny
+        a = i * (ny + 1) + j + 1
+        node = node_at(i, j)
+        x(:, a) = [i, j]
+        if (i < nx .and. j < ny) corner(:, i * ny + j + 1) = a + [0, ny + 1, ny + 2, 1]
+        if (node > 0) moved(:, a) = u(2 * node - 1:2 * node)
+      end do
+    end do
+    do i = 1, rows
+      a = (i + 1) * (ny + 1)
+      call from_axis(depth, i, r, normal)
+      gap(a) = r - radius
+      push(a) = lambda(i)
+      state(a) = merge(FETI_ROW_CLOSED, FETI_ROW_OPEN, push(a) > 0)
+      forces(:, a) = push(a) * normal
+    end do
+    call picture_step(picture_folder(), 'newton_loop_fortran', step, nx * ny, corner, x, moved, forces, push, gap, state, &
+      0.0_dp, 0.0_dp)
+  end subroutine
+
+  !> Presses the strip to a depth by load steps, halved where one fails; prints a line for each, and draws it if there is no friction.
+  !> Force on the die, and what is left unbalanced.
   subroutine press(to)
     real(dp), intent(in) :: to
     real(dp) :: saved_u(n), saved_lambda(rows), saved_lambda_t(rows), step
@@ -122,6 +156,7 @@ contains
       call newton(depth + step, stat, quadratic)
       if (stat == FETI_OK) then
         depth = depth + step
+        if (mu <= 0) call draw(steps)
         steps = steps + 1
         right = right .and. quadratic .and. spent%factorisations == spent%iterations .and. spent%analyses == 0
         call unbalanced(force, error)
@@ -139,6 +174,7 @@ contains
       end if
       call feti_state_drop(problem, state)
     end do
+    if (mu <= 0) call picture_pvd(picture_folder(), 'newton_loop_fortran', steps)
     call demo_value('load steps', real(steps, dp), '-')
     call demo_value('rejected load steps', real(rejected, dp), '-')
     right = right .and. depth >= to

@@ -24,6 +24,7 @@
 program block_between_dies
   use demo
   use feti_contact
+  use vtu_picture, only: nan_of, picture_pvd, picture_step
   implicit none
   integer, parameter :: dp = kind(1.0d0)
   integer, parameter :: nx = 24, ny = 8, nodes = (nx + 1) * (ny + 1), n = 2 * nodes, side = nx + 1, rows = 2 * side, most = 6
@@ -72,6 +73,7 @@ program block_between_dies
   size_of_force = norm2(force(:, 1))
   error = max(error, norm2(force(:, 1) + force(:, 2)) / size_of_force, &
     norm2(force(:, 1) / size_of_force + axis_of(1) / norm2(axis_of(1))), not_turned(), demo_error(lambda, before))
+  call picture_pvd(picture_folder(), 'block_between_dies_fortran', steps)
   call demo_value('load steps', real(steps, dp), '-')
   call demo_value('rejected load steps', real(rejected, dp), '-')
   call demo_value('most iterations of a load step', real(longest, dp), '-')
@@ -99,6 +101,7 @@ contains
       print '(a)', '           |d| / mm  unbalanced closed  status'
       call newton(stat, iterations, fast)
       if (stat == FETI_OK) then
+        call draw(steps)
         done = done + step
         steps = steps + 1
         longest = max(longest, iterations)
@@ -345,6 +348,30 @@ contains
       x(:, k) = at_rest(k) + u(:, k)
     end do
   end function
+
+  !> A step of the film: the block, and what the dies do to its top and its bottom.
+  subroutine draw(step)
+    integer, intent(in) :: step
+    real(dp), parameter :: shear = young / (2 * (1 + poisson)), lame = 2 * shear * poisson / (1 - 2 * poisson)
+    real(dp) :: forces(2, nodes), push(nodes), gap(nodes), distance, normal(2)
+    integer :: corner(4, nx * ny), state(nodes), i, j, k, r
+
+    forces = 0
+    push = 0
+    gap = nan_of()
+    state = -1
+    corner = reshape([((node_at(i, j) + [0, ny + 1, ny + 2, 1], j=0, ny - 1), i=0, nx - 1)], [4, nx * ny])
+    do r = 1, rows
+      k = node_of(r)
+      call from_axis(r, distance, normal)
+      gap(k) = distance - radius(die_of(r))
+      push(k) = lambda(r)
+      state(k) = merge(FETI_ROW_CLOSED, FETI_ROW_OPEN, push(k) > 0)
+      forces(:, k) = push(k) * normal
+    end do
+    call picture_step(picture_folder(), 'block_between_dies_fortran', step, nx * ny, corner, positions() - u, u, forces, push, &
+      gap, state, shear, lame)
+  end subroutine
 
   !> The rigid motions of the block where it is: two translations, and the rotation about the origin, (-y, x).
   subroutine give_motions

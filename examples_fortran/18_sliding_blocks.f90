@@ -14,6 +14,7 @@
 program sliding_blocks
   use demo
   use feti_contact
+  use vtu_picture, only: nan_of, picture_pvd, picture_step
   implicit none
   integer, parameter :: dp = kind(1.0d0)
   integer, parameter :: below_x = 40, below_y = 5, above_x = 16, above_y = 8
@@ -34,7 +35,7 @@ program sliding_blocks
   real(dp) :: now(2, nodes), left(2, nodes), d(n), internal(2, nodes), load(n), ke(8, 8, elements)
 
   !> Of contact, by node; state: 0 open, 2 sticks, 3 slips.
-  real(dp) :: pressure(nodes), shear(2, nodes), state(nodes)                               ! MPa
+  real(dp) :: pressure(nodes), shear(2, nodes), force(nodes), gap(nodes), state(nodes)     ! MPa, N, mm
   type(feti_pair_facts) :: facts
   type(feti_info) :: info
   type(feti_problem) :: problem
@@ -65,13 +66,15 @@ program sliding_blocks
     end do
     longest = max(longest, iterations)
     call get_results
+    call assemble
+    call draw
     along = facts%force(1)
     print '(a, i0, a, i2, a, i2, a, i2, a, f11.6, a, f11.6, a)', 'step ', step, ': ', iterations, ' iterations, ', facts%closed, &
       ' nodes touch, ', facts%slipping, ' slip, force on the foot ', facts%force(2), ' N up, ', along, ' N along'
   end do
   call end_contact
+  call picture_pvd(picture_folder(), 'sliding_blocks_fortran', steps)
 
-  call assemble
   held = sum(internal(:, nodes - above_x:), 2)
   error = norm2(held + facts%force(:2)) / norm2(held)
   sliding = .true.
@@ -127,6 +130,8 @@ contains
     call move_surfaces
     call feti_pair_field(problem, pair, FETI_PRESSURE, pressure)
     call feti_pair_field(problem, pair, FETI_SHEAR, shear)
+    call feti_pair_field(problem, pair, FETI_FORCE, force)
+    call feti_pair_field(problem, pair, FETI_GAP, gap)
     call feti_pair_field(problem, pair, FETI_CLOSED, state)
     call feti_pair_info(problem, pair, facts)
   end subroutine
@@ -135,6 +140,20 @@ contains
     call feti_problem_destroy(problem)
   end subroutine
   ! ---- End of contact. ----
+
+  !> A step of the film. Where nothing is held, internal forces balance those of contact.
+  subroutine draw
+    real(dp), parameter :: stiff = young / (2 * (1 + poisson)), lame = 2 * stiff * poisson / (1 - 2 * poisson)
+    real(dp) :: forces(2, nodes)
+
+    forces = merge(internal, 0.0_dp, reshape(number, [2, nodes]) > 0)
+    gap(:below) = nan_of()
+    gap(below + above_x + 2:) = nan_of()
+    state(:below) = -1
+    state(below + above_x + 2:) = -1
+    call picture_step(picture_folder(), 'sliding_blocks_fortran', step, below_x * below_y, corner, x, now - x, forces, force, gap, &
+      nint(state), stiff, lame)
+  end subroutine
 
   !> Where a held node is to go in a step: the foot of the lower block stays; the top of the upper one goes down in the first step, then along.
   pure function goal_of(at, node) result(goal)

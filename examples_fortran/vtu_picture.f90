@@ -5,7 +5,7 @@ module vtu_picture
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
   implicit none
   private
-  public :: picture_case, picture_mesh, picture_pvd, picture_grid, picture_answer, nan_of
+  public :: picture_case, picture_mesh, picture_step, picture_pvd, picture_grid, picture_answer, nan_of
   public :: vtu_begin, vtu_doubles, vtu_integers, vtu_next, vtu_end
 
   !> The numbers that VTK has for cells.
@@ -25,7 +25,8 @@ module vtu_picture
     real(dp), allocatable :: push(:), gap(:)        ! nodes: force and gap of the row at the node; NaN without a row
     integer, allocatable :: state(:)                ! nodes: FETI_ROW_OPEN, ..; -1 without a row
     integer, allocatable :: piece(:)                ! cells: the piece of a body that is cut, from 0; not allocated: no body is
-    real(dp) :: shear_modulus = 0
+    real(dp) :: shear_modulus = 0, lame = 0         ! shear_modulus 0: no stress is written
+    logical :: large = .false.   ! large displacements of St. Venant and Kirchhoff's material; areas are those of displaced faces
   end type
 
   ! The faces of elements, by the places of their nodes: corners, then the middles of the edges.
@@ -38,6 +39,7 @@ module vtu_picture
   integer, parameter :: place(3, 20) = reshape([-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, 1, -1, 1, 1, 1, 1, &
     -1, 1, 1, 0, -1, -1, 1, 0, -1, 0, 1, -1, -1, 0, -1, 0, -1, 1, 1, 0, 1, 0, 1, 1, -1, 0, 1, -1, -1, 0, 1, -1, 0, 1, 1, 0, &
     -1, 1, 0], [3, 20])
+  real(dp), parameter :: identity(3, 3) = reshape([1, 0, 0, 0, 1, 0, 0, 0, 1] * 1.0_dp, [3, 3])
   integer, parameter :: ends(2, 5:10) = reshape([1, 2, 2, 3, 1, 3, 1, 4, 2, 4, 3, 4], [2, 6])
 
 contains
@@ -102,20 +104,50 @@ contains
     cells = size(elements%kind)
     call add_faces(elements, answer%state, all)
     allocate (stress(size(all%kind)), source=nan_of())
-    do e = 1, cells
+    do e = 1, merge(cells, 0, answer%shear_modulus > 0)
       stress(e) = von_mises(elements, e, answer)
     end do
-    call find_pressures(all, cells, answer%push, pressure)
+    call find_pressures(all, cells, answer, pressure)
     call vtu_begin(folder, name, all, unit)
     call vtu_doubles(unit, 'displacement', answer%u)
     call vtu_doubles(unit, 'contact_force', answer%force)
     call vtu_doubles(unit, 'gap', reshape(answer%gap, [1, size(answer%gap)]))
     call vtu_integers(unit, 'contact', answer%state)
     call vtu_next(unit, all)
-    call vtu_doubles(unit, 'von_mises', reshape(stress, [1, size(stress)]))
+    if (answer%shear_modulus > 0) call vtu_doubles(unit, 'von_mises', reshape(stress, [1, size(stress)]))
     call vtu_doubles(unit, 'pressure', reshape(pressure, [1, size(pressure)]))
     if (allocated(answer%piece)) call vtu_integers(unit, 'piece', [answer%piece, [(-1, e=cells + 1, size(all%kind))]])
     call vtu_end(unit)
+  end subroutine
+
+  !> The same for a step of a film of quadrilaterals in the plane with large displacements: stem_step.vtu. The first cells are body 1,
+  !> the others body 2; corner: 4 x cells, nodes from 1; x, u, force: 2 x nodes, at rest, displacement (length), contact force; push,
+  !> gap and state of nodes as in picture_answer.
+  subroutine picture_step(folder, stem, step, first, corner, x, u, force, push, gap, state, shear_modulus, lame)
+    character(len=*), intent(in) :: folder, stem
+    integer, intent(in) :: step, first, corner(:, :), state(:)
+    real(dp), intent(in) :: x(:, :), u(:, :), force(:, :), push(:), gap(:), shear_modulus, lame
+    type(picture_grid) :: grid
+    type(picture_answer) :: answer
+    character(len=12) :: number
+    integer :: c, cells
+
+    cells = size(corner, 2)
+    allocate (grid%xyz, source=in_space(2, reshape(x, [size(x)])))
+    allocate (grid%corner(20, cells), source=0)
+    grid%corner(:4, :) = corner
+    allocate (grid%kind(cells), source=picture_quad)
+    allocate (grid%body, source=[(merge(1, 2, c <= first), c=1, cells)])
+    allocate (answer%u, source=in_space(2, reshape(u, [size(u)])))
+    allocate (answer%force, source=in_space(2, reshape(force, [size(force)])))
+    allocate (answer%push, source=push)
+    allocate (answer%gap, source=gap)
+    allocate (answer%state, source=state)
+    answer%shear_modulus = shear_modulus
+    answer%lame = lame
+    answer%large = .true.
+    write (number, '(i0)') step
+    call picture_mesh(folder, stem // '_' // trim(number) // '.vtu', grid, answer)
   end subroutine
 
   !> Opens folder/name; then come numbers of the nodes, vtu_next, numbers of the cells, vtu_end.
@@ -248,12 +280,13 @@ contains
     end select
   end function
 
-  !> Von Mises stress in the middle of an element, sqrt(3/2 s : s), of the deviator s = 2 G dev(strain); plane strain in the plane.
+  !> Von Mises stress in the middle of an element, sqrt(3/2 s : s), of the deviator s of the stress, 2 G strain where displacements
+  !> are small; plane strain in the plane.
   real(dp) function von_mises(grid, cell, answer)
     type(picture_grid), intent(in) :: grid
     integer, intent(in) :: cell
     type(picture_answer), intent(in) :: answer
-    real(dp) :: places(3, 3), moved(3, 3), strain(3, 3), g(3)
+    real(dp) :: places(3, 3), moved(3, 3), stress(3, 3), g(3)
     integer :: i, k, node
 
     places = 0
@@ -268,12 +301,26 @@ contains
     end do
     if (grid%kind(cell) == picture_quad) places(3, 3) = 1
     moved = matmul(moved, inverse(places))   ! the gradient of u
-    strain = (moved + transpose(moved)) / 2
-    g = (moved(1, 1) + moved(2, 2) + moved(3, 3)) / 3
-    do k = 1, 3
-      strain(k, k) = strain(k, k) - g(k)
-    end do
-    von_mises = 2 * answer%shear_modulus * sqrt(1.5_dp * sum(strain**2))
+    if (answer%large) then
+      stress = cauchy(moved, answer)
+    else
+      stress = answer%shear_modulus * (moved + transpose(moved))
+    end if
+    stress = stress - (stress(1, 1) + stress(2, 2) + stress(3, 3)) / 3 * identity
+    von_mises = sqrt(1.5_dp * sum(stress**2))
+  end function
+
+  !> Cauchy's stress F S F'/det F of St. Venant and Kirchhoff's material, from the gradient of u: F = I + grad u, Green's strain
+  !> E = (F'F - I)/2, S = lame tr(E) I + 2 G E.
+  function cauchy(grad, answer) result(stress)
+    real(dp), intent(in) :: grad(3, 3)
+    type(picture_answer), intent(in) :: answer
+    real(dp) :: stress(3, 3), F(3, 3), strain(3, 3)
+
+    F = identity + grad
+    strain = (matmul(transpose(F), F) - identity) / 2
+    stress = answer%lame * (strain(1, 1) + strain(2, 2) + strain(3, 3)) * identity + 2 * answer%shear_modulus * strain
+    stress = matmul(F, matmul(stress, transpose(F))) / dot_product(F(:, 1), cross(F(:, 2), F(:, 3)))
   end function
 
   pure function inverse(a) result(b)
@@ -339,17 +386,19 @@ contains
   end subroutine
 
   !> Pressure of every face behind the elements: its nodes share their forces among their faces by the area of these. NaN elsewhere.
-  subroutine find_pressures(grid, elements, push, pressure)
+  subroutine find_pressures(grid, elements, answer, pressure)
     type(picture_grid), intent(in) :: grid
     integer, intent(in) :: elements
-    real(dp), intent(in) :: push(:)
+    type(picture_answer), intent(in) :: answer
     real(dp), allocatable, intent(out) :: pressure(:)
-    real(dp) :: around(size(push)), area
+    real(dp) :: around(size(answer%push)), at(3, size(answer%push)), area
     integer :: c, nodes
 
+    at = grid%xyz
+    if (answer%large) at = at + answer%u
     around = 0
     do c = elements + 1, size(grid%kind)
-      associate (x => grid%xyz(:, max(1, grid%corner(:4, c))), nodes_of => pack(grid%corner(:, c), grid%corner(:, c) > 0))
+      associate (x => at(:, max(1, grid%corner(:4, c))), nodes_of => pack(grid%corner(:, c), grid%corner(:, c) > 0))
         select case (grid%kind(c))
         case (picture_line)   ! times thickness 1
           area = norm2(x(:, 2) - x(:, 1))
@@ -364,7 +413,7 @@ contains
     allocate (pressure(size(grid%kind)), source=nan_of())
     do c = elements + 1, size(grid%kind)
       nodes = count(grid%corner(:, c) > 0)
-      pressure(c) = sum(push(grid%corner(:nodes, c)) / around(grid%corner(:nodes, c)))
+      pressure(c) = sum(answer%push(grid%corner(:nodes, c)) / around(grid%corner(:nodes, c)))
     end do
   end subroutine
 

@@ -1,13 +1,13 @@
 #!/bin/sh
-# same_forces.sh PROGRAM OTHER: both end with exit code 0 and a demo line that is ok, and apart from it print the same lines, in which a
-# number differs by at most 1e-8 of the largest one.
+# same_forces.sh PROGRAM OTHER: both end with exit code 0 and a demo line that is ok, and apart from it and the names of pictures print the
+# same lines, in which a number differs by at most 1e-8 of the largest one.
 set -eu
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for which in 1 2; do
-    "$1" > "$work/log" || { cat "$work/log"; exit 1; }
+    "$1" "$work" "$work" > "$work/log" || { cat "$work/log"; exit 1; }
     grep -q '^demo .* ok *$' "$work/log" || { cat "$work/log"; exit 1; }
-    grep -v '^demo ' "$work/log" > "$work/$which"
+    grep -v '^demo \|^picture ' "$work/log" > "$work/$which"
     shift
 done
 [ -s "$work/1" ] || { echo "no numbers printed"; exit 1; }

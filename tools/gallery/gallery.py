@@ -18,8 +18,8 @@ plot.rcParams.update({"font.size": 11, "axes.spines.top": False, "axes.spines.ri
 
 
 def save(image, path):
-    """With a palette: flat colours of a field need no more."""
-    image.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
+    """With a palette, of which the bars of colours get their share."""
+    image.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE).save(path, optimize=True)
     print("picture", path)
 
 
@@ -85,6 +85,24 @@ def cattaneo(pictures, out):
     save_figure(figure, out / "gallery_cattaneo_mindlin.png")
 
 
+def sliding(pictures, out):
+    """Two blocks as they are in three steps; an arrow ends at each node of the foot, the force on it."""
+    figure, axes = plot.subplots(3, 1, figsize=(8.6, 8.4), sharex=True, sharey=True, layout="constrained")
+    for axis, (step, title) in zip(axes, {0: "pressed by 0.25 mm", 3: "pushed along by 7.5 mm", 6: "pushed along by 15 mm"}.items()):
+        grid = pyvista.read(pictures / f"sliding_blocks_{step}.vtu")
+        stress = grid.cell_data["von_mises"][grid.celltypes == QUAD]
+        drawn = PolyCollection(polygons(grid, QUAD, 1.0), array=stress, cmap=STRESS, clim=(0, 35), edgecolors="#00000040", linewidths=0.4)
+        axis.add_collection(drawn)
+        state = grid["contact"]
+        at, force = [vectors[state > 0, :2] for vectors in (grid.points + grid["displacement"], grid["contact_force"])]
+        axis.quiver(*at.T, *force.T, pivot="tip", angles="xy", scale_units="xy", scale=7, width=0.0025)
+        title += f": of {sum(state >= 0)} nodes of the foot {sum(state == 2)} stick, {sum(state == 3)} slip"
+        axis.set(xlim=(-0.5, 40.5), ylim=(-0.5, 14.5), aspect="equal", title=title, ylabel="y / mm")
+    axes[-1].set_xlabel("x / mm")
+    figure.colorbar(drawn, ax=axes, label="von Mises stress / MPa", shrink=0.6)
+    save_figure(figure, out / "gallery_sliding.png")
+
+
 class View:
     """One view of solids, off screen."""
 
@@ -120,7 +138,7 @@ def side_by_side(views, path):
     save_figure(figure, path)
 
 
-GREY = {"color": "#e3e6ea", "edge_color": "#9aa0a8"}
+GREY = {"color": "#e3e6ea", "edge_color": "#5f666f"}
 
 
 def three_bodies(pictures, out):
@@ -144,7 +162,7 @@ def three_bodies(pictures, out):
 
 
 def pieces(pictures, out):
-    """The pieces of the cut block apart; the block with the pressure of the obstacle, seen from below."""
+    """The pieces of the cut block apart; the block with the pressure of the obstacle, turned over."""
     grid = pyvista.read(pictures / "block_in_pieces.vtu")
     is_solid = grid.celltypes == 12
     left, right = View(), View()
@@ -152,12 +170,12 @@ def pieces(pictures, out):
     for piece in range(8):
         part = grid.extract_cells(is_solid & (grid.cell_data["piece"] == piece))
         left.solid(part.translate(0.25 * (np.array(part.center) - 0.5)), color=colours[piece], edge_color="#333333")
-    moved = grid.warp_by_vector("displacement", factor=500)
+    moved = grid.warp_by_vector("displacement", factor=500).rotate_x(180, point=(0.5, 0.5, 0.5))
     right.solid(moved.extract_cells(is_solid), **GREY)
-    right.solid(moved.extract_cells(~is_solid).translate((0, 0, -0.005)), scalars="pressure", cmap=PRESSURE, clim=(0, 16), edge_color="#9aa0a8", lighting=False)
+    right.solid(moved.extract_cells(~is_solid).translate((0, 0, 0.005)), scalars="pressure", cmap=PRESSURE, clim=(0, 16), edge_color="#9aa0a8", lighting=False)
     views = [
         (left.image((2.6, -3.2, 2.4), (0.5, 0.5, 0.5), 1.15), "eight pieces, drawn apart", None, None, None),
-        (right.image((2.6, -3.0, -2.6), (0.5, 0.5, 0.42), 1.2), "from below, displacements x 500", "contact pressure / MPa", PRESSURE, 16),
+        (right.image((2.6, -3.2, 2.4), (0.5, 0.5, 0.5), 1.15), "turned over, displacements x 500", "contact pressure / MPa", PRESSURE, 16),
     ]
     side_by_side(views, out / "gallery_pieces.png")
 
@@ -167,7 +185,7 @@ def main(pictures, out):
     for file in [*pictures.glob("*.vtu"), *pictures.glob("*.pvd")]:
         read = pyvista.get_reader(file).read()
         assert read.n_blocks if file.suffix == ".pvd" else read.n_cells, file
-    for draw in (hertz, three_bodies, cattaneo, pieces):
+    for draw in (hertz, three_bodies, cattaneo, sliding, pieces):
         draw(pictures, out)
     shutil.copyfile(pictures / "cattaneo_mindlin_shear.svg", out / "gallery_shear.svg")
 
