@@ -39,6 +39,30 @@ pub enum Kind {
     Communication,
 }
 
+impl Kind {
+    /// The name of its status in C.
+    pub fn status(&self) -> &'static str {
+        match self {
+            Self::Argument(_) => "FETI_ARGUMENT",
+            Self::Memory => "FETI_MEMORY",
+            Self::State => "FETI_STATE",
+            Self::LoadNotHeld => "FETI_LOAD_NOT_HELD",
+            Self::Slides => "FETI_SLIDES",
+            Self::GapsContradict => "FETI_GAPS_CONTRADICT",
+            Self::NullSpace => "FETI_NULL_SPACE",
+            Self::Indefinite => "FETI_INDEFINITE",
+            Self::Overflow => "FETI_OVERFLOW",
+            Self::Internal => "FETI_INTERNAL",
+            Self::Unsupported => "FETI_UNSUPPORTED",
+            Self::Cancelled => "FETI_CANCELLED",
+            Self::TimeOver => "FETI_TIME",
+            Self::Callback => "FETI_CALLBACK",
+            Self::Io => "FETI_IO",
+            Self::Communication => "FETI_COMMUNICATION",
+        }
+    }
+}
+
 /// What proves that there is no solution; `margin`, above 0 and at most 1, says how clearly.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Proof {

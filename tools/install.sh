@@ -49,6 +49,7 @@ files() {
     each "$DATADIR/feti_contact/suppressions" tools/suppressions/*
     each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE LICENSE-THIRD-PARTY
     each "$DOCDIR/docs" docs/*.md
+    each "$DOCDIR/docs/hosts" docs/hosts/*.md
     each "$DOCDIR/docs/pictures" docs/pictures/*
     each "$DOCDIR/examples_c" examples_c/*
     each "$DOCDIR/examples_fortran" examples_fortran/*

@@ -1,4 +1,4 @@
-//! How a command ends: what it prints, its exit status, and the library's names of both.
+//! How a command ends: what it prints, its exit status, and what to do.
 
 use std::io::{self, Write};
 
@@ -28,38 +28,12 @@ impl End {
     }
 }
 
-/// Name and class of a solve's end.
+/// Name of the status and class of a solve's end.
 pub fn of(end: &Result<Outcome, Kind>) -> (&'static str, u8) {
     match end {
-        Ok(Outcome::Solved) => ("FETI_OK", OK),
-        Ok(Outcome::Iterations) => ("FETI_ITERATIONS", INCOMPLETE),
-        Ok(Outcome::Time) => ("FETI_TIME", INCOMPLETE),
-        Ok(Outcome::Cancelled) => ("FETI_CANCELLED", INCOMPLETE),
-        Ok(Outcome::Stalled) => ("FETI_STALLED", INCOMPLETE),
-        Ok(Outcome::Inaccurate) => ("FETI_INACCURATE", INCOMPLETE),
-        Ok(Outcome::Marginal) => ("FETI_MARGINAL", INCOMPLETE),
-        Err(kind) => (name(kind), NONE),
-    }
-}
-
-fn name(kind: &Kind) -> &'static str {
-    match kind {
-        Kind::Argument(_) => "FETI_ARGUMENT",
-        Kind::Memory => "FETI_MEMORY",
-        Kind::State => "FETI_STATE",
-        Kind::LoadNotHeld => "FETI_LOAD_NOT_HELD",
-        Kind::Slides => "FETI_SLIDES",
-        Kind::GapsContradict => "FETI_GAPS_CONTRADICT",
-        Kind::NullSpace => "FETI_NULL_SPACE",
-        Kind::Indefinite => "FETI_INDEFINITE",
-        Kind::Overflow => "FETI_OVERFLOW",
-        Kind::Internal => "FETI_INTERNAL",
-        Kind::Unsupported => "FETI_UNSUPPORTED",
-        Kind::Cancelled => "FETI_CANCELLED",
-        Kind::TimeOver => "FETI_TIME",
-        Kind::Callback => "FETI_CALLBACK",
-        Kind::Io => "FETI_IO",
-        Kind::Communication => "FETI_COMMUNICATION",
+        Ok(Outcome::Solved) => (Outcome::Solved.status(), OK),
+        Ok(outcome) => (outcome.status(), INCOMPLETE),
+        Err(kind) => (kind.status(), NONE),
     }
 }
 

@@ -29,6 +29,21 @@ pub enum Outcome {
     Cancelled,
 }
 
+impl Outcome {
+    /// The name of its status in C.
+    pub fn status(&self) -> &'static str {
+        match self {
+            Self::Solved => "FETI_OK",
+            Self::Marginal => "FETI_MARGINAL",
+            Self::Inaccurate => "FETI_INACCURATE",
+            Self::Stalled => "FETI_STALLED",
+            Self::Iterations => "FETI_ITERATIONS",
+            Self::Time => "FETI_TIME",
+            Self::Cancelled => "FETI_CANCELLED",
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowState {
     /// The gap is open, no force.

@@ -73,6 +73,22 @@ fn few_steps_are_solved_with_factors_in_single_precision_to_the_accuracy_of_doub
     }
 }
 
+/// Moduli that differ from element to element by up to 1:2000, and a body that is a million times as stiff as the other.
+#[test]
+fn uneven_bodies_have_the_answers_of_double_precision() {
+    let even = Blocks { elements: 16, young: 1e-3 };
+    let mut stiff = even.build();
+    let upper = &mut stiff.bodies[1];
+    upper.stiffness.val.iter_mut().chain(&mut upper.load).for_each(|v| *v *= 1e6);
+    for deck in [even.varied(1.999, 5), stiff] {
+        let (expected, found) = (solved(&deck, "").1, solved(&deck, "steps=1").1);
+        for (expected, found) in expected.iter().zip(&found) {
+            assert!((found.energy / expected.energy - 1.0).abs() < 1e-8, "{}", deck.name);
+            assert!(found.apart(expected) < 1e-6, "{} {}", deck.name, found.apart(expected));
+        }
+    }
+}
+
 #[test]
 fn factors_in_single_precision_give_the_same_bits_for_any_number_of_threads() {
     for deck in [blocks(), rubbing()] {

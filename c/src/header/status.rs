@@ -88,42 +88,18 @@ const TABLE: [(i32, &CStr, &CStr); 23] = [
 
 /// Status of a failure, and the position of the refused argument (0: none) in `arguments`.
 pub(crate) fn of_kind(kind: Kind, arguments: &[&str]) -> (i32, i32) {
-    let status = match kind {
-        Kind::Argument(name) => {
-            let position =
-                arguments.iter().position(|argument| *argument == name).map_or(0, |k| k as i32 + 1);
-            return (FETI_ARGUMENT - position, position);
-        }
-        Kind::Memory => FETI_MEMORY,
-        Kind::State => FETI_STATE,
-        Kind::LoadNotHeld => FETI_LOAD_NOT_HELD,
-        Kind::Slides => FETI_SLIDES,
-        Kind::GapsContradict => FETI_GAPS_CONTRADICT,
-        Kind::NullSpace => FETI_NULL_SPACE,
-        Kind::Indefinite => FETI_INDEFINITE,
-        Kind::Overflow => FETI_OVERFLOW,
-        Kind::Internal => FETI_INTERNAL,
-        Kind::Unsupported => FETI_UNSUPPORTED,
-        Kind::Cancelled => FETI_CANCELLED,
-        Kind::TimeOver => FETI_TIME,
-        Kind::Callback => FETI_CALLBACK,
-        Kind::Io => FETI_IO,
-        Kind::Communication => FETI_COMMUNICATION,
-    };
-    (status, 0)
+    let Kind::Argument(name) = kind else { return (of_name(kind.status()), 0) };
+    let position = arguments.iter().position(|argument| *argument == name).map_or(0, |k| k as i32 + 1);
+    (FETI_ARGUMENT - position, position)
 }
 
 /// Status of a solve that gave an answer.
 pub(crate) fn of_outcome(outcome: &Outcome) -> i32 {
-    match outcome {
-        Outcome::Solved => FETI_OK,
-        Outcome::Iterations => FETI_ITERATIONS,
-        Outcome::Time => FETI_TIME,
-        Outcome::Cancelled => FETI_CANCELLED,
-        Outcome::Stalled => FETI_STALLED,
-        Outcome::Inaccurate => FETI_INACCURATE,
-        Outcome::Marginal => FETI_MARGINAL,
-    }
+    of_name(outcome.status())
+}
+
+fn of_name(name: &str) -> i32 {
+    TABLE.iter().find(|row| row.1.to_bytes() == name.as_bytes()).map_or(FETI_INTERNAL, |row| row.0)
 }
 
 /// (name, text) of a status.

@@ -12,6 +12,8 @@ static void numbers(feti_problem *p)
     EXPECT(FETI_ARGUMENT - 3, feti_set_f64(p, "gamma", -1.0));
     OK(feti_get_f64(p, "gamma", &gamma));
     CHECK(gamma == 2.5, "gamma is %g", gamma);
+    OK(feti_set_i64(p, "steps", 2));
+    EXPECT(FETI_ARGUMENT - 3, feti_set_i64(p, "steps", -1));
     OK(feti_set_i64(p, "threads", 3));
     EXPECT(FETI_ARGUMENT - 3, feti_set_i64(p, "threads", -1));
     OK(feti_get_i64(p, "threads", &threads));

@@ -22,6 +22,7 @@ contains
 
     call feti_problem_create(p)
     call feti_set(p, 'gamma', 2.5_dp)
+    call feti_set(p, 'steps', 2)
     call feti_set(p, 'threads', 3)
     call feti_set(p, 'memory_limit', 8000000000_int64)
     call feti_set(p, 'start', 'previous')

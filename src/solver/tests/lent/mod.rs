@@ -252,7 +252,7 @@ fn a_product_is_one_request_and_one_answer_on_each_rank_and_two_numbers_for_each
     let after = (problem.traffic(), served.asked(Name::Multiply), served.bytes(Name::Multiply));
     assert_eq!((after.0.messages - before.0.messages, after.1 - before.1), (4, 4));
     // chains 0, 1, 3, 4 are lent: 1, 2, 2, 1 rows
-    assert_eq!(after.2 - before.2, 16 * 6 + 26 * 4);
+    assert_eq!(after.2 - before.2, 16 * 6 + 34 * 4);
     drop(problem);
     assert_eq!(served.end(), 0);
 }
