@@ -270,7 +270,7 @@ impl GeneralizedInverse {
     pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
         let mut form = match &self.factor {
             Factor::Own(factor) => inverse_form(factor, rows)?,
-            Factor::Rounded(rounded) => inverse_form(&rounded.factor, rows)?,
+            Factor::Rounded(rounded) => rounded.form(rows)?,
             Factor::Host(host) => host.inverse_form(rows)?,
             Factor::Elsewhere(_) => {
                 return Err(Error::new(Kind::Internal, "K+ of a body is looked for on the wrong rank"));

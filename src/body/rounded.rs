@@ -9,9 +9,10 @@
 //! as that of K+ after one to four corrections, each of which reduces the error to a part 2^-24 / softness.
 
 use crate::error::Result;
+use crate::linalg::cholesky::inverse_form;
 use crate::linalg::random::Random;
-use crate::linalg::vector::{axpy, weighted_norm};
-use crate::linalg::{Cholesky, Multiple};
+use crate::linalg::vector::{axpy, power_of_two_below, weighted_norm};
+use crate::linalg::{Cholesky, Csr, Multiple, Packed};
 use crate::numbers::body::{CONVERGED, REACHED_ROUNDING, SHARE, TINY};
 use crate::platform::memory::{copied, zeros};
 use crate::platform::slabs::Slabs;
@@ -98,6 +99,19 @@ impl Rounded {
         x.copy_from_slice(&load);
         let left = rounded.refined(1.0, &mut x, |x| rounded.approximate(x))?;
         Ok((left <= CONVERGED * rounded.rounding).then_some((rounded, softness)))
+    }
+
+    /// `B K~+ B'` for the rows B (m x n) of this body: by rows with largest entries in [1, 2), since single precision cannot hold the
+    /// squares of rows that belong to bodies of very different stiffness.
+    pub fn form(&self, rows: &Csr) -> Result<Packed> {
+        let m = rows.rows();
+        let largest = |i: usize| rows.row(i).fold(0.0, |most: f64, (_, v)| most.max(v.abs()));
+        let by: Vec<f64> = (0..m).map(|i| power_of_two_below(largest(i))).collect();
+        let mut even = Csr::with_room(rows.cols, m, rows.val.len());
+        (0..m).for_each(|i| even.push_row(rows.row(i).map(|(dof, v)| (dof, v / by[i]))));
+        let (form, mut all) = (inverse_form(&self.factor, &even)?, Packed::zeros(m)?);
+        (0..m).for_each(|i| (0..=i).for_each(|j| all.add(i, j, by[i] * (by[j] * form.get(i, j)))));
+        Ok(all)
     }
 
     /// `x <- K~+ x`
@@ -235,6 +249,20 @@ mod tests {
         for ground in [0.0, 1e-9, -1e-9, 1e-7, -1e-7, 1e-6] {
             assert!((20..60).all(|n| computed(n, ground).is_none()), "{ground}");
         }
+    }
+
+    #[test]
+    fn entries_of_dual_operators_are_those_of_double_precision_to_rounding_whatever_the_lengths_of_rows() {
+        let (k, single) = (chain(60, 0.3), computed(60, 0.3).unwrap());
+        let mut rows = Csr::empty(60);
+        rows.push_row([(3, 1e-90), (17, -2e-90)]);
+        rows.push_row([]);
+        rows.push_row([(39, 2e60)]);
+        let (form, expected) = (single.form(&rows).unwrap(), inverse_form(&factor(&k), &rows).unwrap());
+        for (i, j) in [(0, 0), (2, 0), (2, 2)] {
+            assert!((form.get(i, j) / expected.get(i, j) - 1.0).abs() < 1e-4, "{i} {j}");
+        }
+        assert_eq!([0, 1, 2].map(|j| form.get(1, j)), [0.0; 3]);
     }
 
     #[test]

@@ -17,8 +17,10 @@ pub(super) fn precisions(
         if (1..=FEW_STEPS).contains(&model.settings.steps) { Precision::Single } else { Precision::Double };
     let of = |p: usize| if model.is_piece(p) { Precision::Rounded } else { whole };
     let mut all: Vec<Precision> = (0..model.bodies.len()).map(of).collect();
-    for p in (0..all.len()).filter(|&p| model.is_piece(p) && !operators.implicit[p]) {
-        all[owner(p)] = Precision::Double;
+    for owner in (0..all.len()).filter(|&p| !operators.implicit[p]).map(owner) {
+        if model.is_piece(owner) {
+            all[owner] = Precision::Double;
+        }
     }
     all
 }

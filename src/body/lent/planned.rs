@@ -45,7 +45,8 @@ pub struct Analysis {
     pub bytes: usize,
 }
 
-/// Makes K+ by a plan: with the factor of the K+ `of` if given; otherwise by this analysis, with a factor of its own. `further`: the name of the analysis if it has to be another. Answer: `Made`.
+/// Makes K+ by a plan: with the factor of the K+ `of` if given; otherwise by this analysis, with a factor of its own.
+/// `further`: the name of the analysis if it has to be another. Answer: `Made`.
 pub(super) struct Factorise {
     pub kplus: u64,
     pub plan: u64,
