@@ -22,6 +22,8 @@ def integers(x, name, shape=None, dtype=None):
         a = a.astype(np.int64)
     if a.dtype.kind not in "iu" or a.dtype == np.uint64 and a.size and a.max() > np.iinfo(np.int64).max:
         raise TypeError(f"{name}: numbers of type {a.dtype}, not integers")
+    if dtype is np.int32 and a.size and not -(2**31) <= a.min() <= a.max() < 2**31:
+        raise OverflowError(f"{name}: numbers from {a.min()} to {a.max()} do not fit into 32 bits")
     own = a.dtype.newbyteorder("=") if a.dtype.kind == "i" and a.dtype.itemsize in (4, 8) else np.dtype(np.int64)
     return np.ascontiguousarray(fitting(a, name, shape), dtype=dtype or own)
 

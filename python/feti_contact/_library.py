@@ -8,6 +8,8 @@ from pathlib import Path
 
 from . import _raw
 
+#: ctypes takes the last bits of numbers beyond these.
+LIMITS = {ctypes.c_int32: 2**31, ctypes.c_int64: 2**63}
 PLACES = ("body", "component", "dof", "row", "entry", "element", "node", "pair", "face", "rank")
 
 
@@ -69,8 +71,12 @@ def last_error(status: int) -> FetiError:
 
 def call(name: str, *arguments) -> int:
     """Calls feti_NAME; a status below 0 is a FetiError. Arguments as ctypes takes them."""
+    function = getattr(LIBRARY, "feti_" + name)
+    for kind, argument in zip(function.argtypes, arguments):
+        if kind in LIMITS and isinstance(argument, int) and not -LIMITS[kind] <= argument < LIMITS[kind]:
+            raise OverflowError(f"feti_{name}: {argument} does not fit into {8 * ctypes.sizeof(kind)} bits")
     try:
-        status = getattr(LIBRARY, "feti_" + name)(*arguments)
+        status = function(*arguments)
     except ctypes.ArgumentError as wrong:
         raise TypeError(f"feti_{name}: {wrong}") from None
     if status < 0:

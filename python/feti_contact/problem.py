@@ -467,6 +467,8 @@ def _bar():
             bar.update(0)
 
         yield show
+        bar.n = 100
+        bar.refresh()
 
 
 def _unpickled(data, width):
