@@ -87,17 +87,17 @@ impl Rounded {
             (copied(&load, WHAT)?, zeros(load.len(), WHAT)?, zeros(load.len(), WHAT)?);
         factor.solve(&mut x)?;
         k.mul_with_terms(&x, &mut image, &mut terms);
+        image.iter_mut().zip(&load).for_each(|(image, load)| *image -= load);
+        held.iter().for_each(|&dof| image[dof] = 0.0);
         let mut rounded = Self::with(factor, k, held, 1.0);
-        let softness = rounded.size(&load) / rounded.size(&terms);
+        let size = rounded.size(&load);
+        let softness = size / rounded.size(&terms);
         // false also for NaN
-        if !(softness * SHARE > SINGLE
-            && rounded.size(&rounded.left(&load, &x)?) <= SHARE * rounded.size(&load))
-        {
+        if !(softness * SHARE > SINGLE && rounded.size(&image) <= SHARE * size) {
             return Ok(None);
         }
         rounded.rounding = Self::rounding(softness);
-        x.copy_from_slice(&load);
-        let left = rounded.refined(1.0, &mut x, |x| rounded.approximate(x))?;
+        let left = rounded.improved(1.0, &load, &mut x, |x| rounded.approximate(x))?;
         Ok((left <= CONVERGED * rounded.rounding).then_some((rounded, softness)))
     }
 
@@ -109,9 +109,9 @@ impl Rounded {
         let by: Vec<f64> = (0..m).map(|i| power_of_two_below(largest(i))).collect();
         let mut even = Csr::with_room(rows.cols, m, rows.val.len());
         (0..m).for_each(|i| even.push_row(rows.row(i).map(|(dof, v)| (dof, v / by[i]))));
-        let (form, mut all) = (inverse_form(&self.factor, &even)?, Packed::zeros(m)?);
-        (0..m).for_each(|i| (0..=i).for_each(|j| all.add(i, j, by[i] * (by[j] * form.get(i, j)))));
-        Ok(all)
+        let mut form = inverse_form(&self.factor, &even)?;
+        form.scale(&by);
+        Ok(form)
     }
 
     /// `x <- K~+ x`
@@ -137,15 +137,26 @@ impl Rounded {
         self.refined(share, x, near).map(drop)
     }
 
-    /// `x <- x + near(b - K x)`, from 0, while this reduces the residual. Returns the last residual that was computed, relative to b.
+    /// `x <- near(b)`, b in x on entry, improved.
     fn refined(&self, share: f64, x: &mut [f64], near: impl Fn(&mut [f64]) -> Result<()>) -> Result<f64> {
         let load = copied(x, WHAT)?;
-        let size = self.size(&load);
-        let rounding = self.rounding / share * size;
         near(x)?;
+        self.improved(share, &load, x, near)
+    }
+
+    /// `x <- x + near(b - K x)` while this reduces the residual. Returns the last residual that was computed, relative to b.
+    fn improved(
+        &self,
+        share: f64,
+        load: &[f64],
+        x: &mut [f64],
+        near: impl Fn(&mut [f64]) -> Result<()>,
+    ) -> Result<f64> {
+        let size = self.size(load);
+        let rounding = self.rounding / share * size;
         let (mut before, mut last) = (size, size);
         for _ in 0..CORRECTIONS {
-            let mut left = self.left(&load, x)?;
+            let mut left = self.left(load, x)?;
             let now = self.size(&left);
             last = now;
             // true also for NaN

@@ -93,15 +93,26 @@ impl Packed {
 
     /// `A_ij += value`, for i and j in any order.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
+        self.change(i, j, |entry| *entry += value);
+    }
+
+    /// `A_ij <- by_i A_ij by_j`
+    pub fn scale(&mut self, by: &[f64]) {
+        for i in 0..self.order {
+            (0..=i).for_each(|j| self.change(i, j, |entry| *entry = by[i] * (by[j] * *entry)));
+        }
+    }
+
+    fn change(&mut self, i: usize, j: usize, change: impl Fn(&mut f64)) {
         let (i, j, order) = (i.max(j), i.min(j), self.order);
         match &mut self.lower {
-            Lower::Rows(entries) => entries[row(i) + j] += value,
+            Lower::Rows(entries) => change(&mut entries[row(i) + j]),
             Lower::Tiles(tiles) => {
                 let (i, j) = (padded(order, i), padded(order, j));
                 let tile = &mut tiles[tile(order, i / SIDE, j / SIDE)].0;
-                tile[j % SIDE][i % SIDE] += value;
+                change(&mut tile[j % SIDE][i % SIDE]);
                 if i / SIDE == j / SIDE && i != j {
-                    tile[i % SIDE][j % SIDE] += value;
+                    change(&mut tile[i % SIDE][j % SIDE]);
                 }
             }
         }
@@ -350,6 +361,23 @@ mod tests {
                 (0..order).for_each(|i| y[1][i] = (0..order).map(|j| once.get(i, j)).sum());
                 assert_eq!(y[0], y[1]);
             }
+        }
+    }
+
+    #[test]
+    fn a_scaled_matrix_has_scaled_rows_and_columns() {
+        for order in [3, 127, 128, 203] {
+            let by: Vec<f64> = (0..order).map(|i| 2f64.powi(i as i32 % 7 - 3)).collect();
+            let (mut scaled, mut expected) = (Packed::zeros(order).unwrap(), Packed::zeros(order).unwrap());
+            for i in 0..order {
+                for j in 0..=i {
+                    let value = (3 * i + 5 * j) as f64 + 0.3;
+                    scaled.add(i, j, value);
+                    expected.add(i, j, by[i] * value * by[j]);
+                }
+            }
+            scaled.scale(&by);
+            assert_eq!(scaled, expected, "{order}");
         }
     }
 
