@@ -24,7 +24,6 @@ pub use cost::{all_bytes, implicit_bodies, DistinctRows, Size};
 pub use coupling::dependent_rows;
 pub use elsewhere::Form;
 pub use ledger::Ledger;
-pub use operator::Accuracy;
 pub use preconditioner::{constrained, Boundary, BoundaryStiffness, Preconditioner};
 pub use reuse::{ColumnCounts, Kept};
 pub use turned::{TurnedFace, TurnedRow};
@@ -280,7 +279,7 @@ impl Dual {
         in_parallel: &InParallel<Vec<f64>>,
     ) -> Result<Vec<f64>> {
         tally::costly();
-        let images = self.images(x, Accuracy::OfFactors, in_parallel)?;
+        let images = self.images(x, None, in_parallel)?;
         let mut distances = vec![0.0; x.len()];
         for ((s, moved), image) in self.subdomains.iter().zip(moved).zip(&images) {
             for ((&i, moved), image) in s.rows.iter().zip(moved).zip(image) {

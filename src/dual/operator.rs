@@ -16,49 +16,29 @@ use crate::platform::tally;
 /// Multiplications of a step per row, besides those of its product.
 const VECTORS: usize = 100;
 
-/// Accuracy of products with F.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Accuracy {
-    Full,
-    /// x is this share of a whole, relative to whose product rounding counts.
-    Share(f64),
-    /// Accuracy of the factors, which may be rounded to single precision.
-    OfFactors,
-}
-
-impl Accuracy {
-    fn share(self) -> Option<f64> {
-        match self {
-            Self::Full => Some(1.0),
-            Self::Share(share) => Some(share),
-            Self::OfFactors => None,
-        }
-    }
-}
-
 impl Subdomain {
-    /// `F_p x`, x over all rows of B, the product over the rows of the body.
-    fn product(&self, x: &[f64], by: Accuracy) -> Result<Vec<f64>> {
+    /// `F_p x`, x over all rows of B, the product over the rows of the body; `share` as in [`Dual::product`].
+    fn product(&self, x: &[f64], share: Option<f64>) -> Result<Vec<f64>> {
         self.spend(Ledger::multiplies)?;
         if let Some(Form::Own(explicit)) = self.form() {
             let local = self.multiples.gather(&self.rows, x);
-            if by != Accuracy::OfFactors && self.kplus.is_rounded() {
+            if share.is_some() && self.kplus.is_rounded() {
                 let rows = Multiples::of(&self.matrix).1;
-                return Ok(self.image_of(self.kplus.product_between(&rows, &local, by.share())?));
+                return Ok(self.image_of(self.kplus.product_between(&rows, &local, share)?));
             }
             let mut image = vec![0.0; local.len()];
             explicit.apply(&local, &mut image);
             return Ok(self.image_of(image));
         }
-        let image = self.kplus.product_between(&self.matrix, &self.gather(x), by.share())?;
+        let image = self.kplus.product_between(&self.matrix, &self.gather(x), share)?;
         Ok(self.image_of(image))
     }
 
     /// The question for the product if F_p is on another rank.
-    fn asking(&self, x: &[f64], by: Accuracy) -> Option<Asking> {
+    fn asking(&self, x: &[f64], share: Option<f64>) -> Option<Asking> {
         let Some(Form::Elsewhere(form)) = &self.operator else { return None };
         let local = if form.explicit { self.multiples.gather(&self.rows, x) } else { self.gather(x) };
-        Some(form.multiplying(by.share(), local))
+        Some(form.multiplying(share, local))
     }
 
     /// The product from the answer.
@@ -108,16 +88,17 @@ impl Subdomain {
 
 impl Dual {
     /// The operator of (12)-(13): `y = F x = C x + sum_p B_p K_p+ B_p' x`. The products of the bodies are computed in any
-    /// order, and summed in the order of the bodies. After an error y is unchanged.
+    /// order, and summed in the order of the bodies. After an error y is unchanged. `share`: x is this part of a whole,
+    /// relative to whose product rounding counts; none: factors in single precision are not corrected.
     pub fn product(
         &self,
         x: &[f64],
         y: &mut [f64],
-        by: Accuracy,
+        share: Option<f64>,
         in_parallel: &InParallel<Vec<f64>>,
     ) -> Result<()> {
         tally::costly();
-        let images = self.images(x, by, in_parallel)?;
+        let images = self.images(x, share, in_parallel)?;
         y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
         for (s, image) in self.subdomains.iter().zip(&images) {
             s.rows.iter().zip(image).for_each(|(&i, v)| y[i] += v);
@@ -129,12 +110,12 @@ impl Dual {
     pub(super) fn images(
         &self,
         x: &[f64],
-        by: Accuracy,
+        share: Option<f64>,
         in_parallel: &InParallel<Vec<f64>>,
     ) -> Result<Vec<Vec<f64>>> {
         let each = Each {
-            own: &|p| self.subdomains[p].product(x, by),
-            asking: &|p| self.subdomains[p].asking(x, by),
+            own: &|p| self.subdomains[p].product(x, share),
+            asking: &|p| self.subdomains[p].asking(x, share),
             of_answer: &|p, answer| self.subdomains[p].image_elsewhere(answer),
         };
         self.each(&each, in_parallel)
@@ -196,15 +177,15 @@ impl Operator for Dual {
     }
 
     fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        self.product(x, y, Accuracy::Full, &|count, task| (0..count).map(task).collect())
+        self.product(x, y, Some(1.0), &|count, task| (0..count).map(task).collect())
     }
 
     fn apply_to_share(&self, share: f64, x: &[f64], y: &mut [f64]) -> Result<()> {
-        self.product(x, y, Accuracy::Share(share), &|count, task| (0..count).map(task).collect())
+        self.product(x, y, Some(share), &|count, task| (0..count).map(task).collect())
     }
 
     fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        self.product(x, y, Accuracy::OfFactors, &|count, task| (0..count).map(task).collect())
+        self.product(x, y, None, &|count, task| (0..count).map(task).collect())
     }
 
     fn has_approximation(&self) -> bool {

@@ -1,6 +1,6 @@
 //! Products with F, which stop when the host cancels the call.
 
-use crate::dual::{Accuracy, Dual};
+use crate::dual::Dual;
 use crate::error::Result;
 use crate::linalg::Operator;
 use crate::platform::{interrupt, threads};
@@ -17,13 +17,13 @@ impl<'a> Interruptible<'a> {
         Self { operator, threads }
     }
 
-    fn product(&self, x: &[f64], y: &mut [f64], by: Accuracy) -> Result<()> {
+    fn product(&self, x: &[f64], y: &mut [f64], share: Option<f64>) -> Result<()> {
         interrupt::check()?;
         let on_caller = |p: usize| self.operator.multiplies_on_caller(p);
         let in_parallel = |count, task: &(dyn Fn(usize) -> _ + Sync)| {
             threads::run_apart(self.threads, count, on_caller, task)
         };
-        self.operator.product(x, y, by, &in_parallel)
+        self.operator.product(x, y, share, &in_parallel)
     }
 }
 
@@ -37,15 +37,15 @@ impl Operator for Interruptible<'_> {
     }
 
     fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        self.product(x, y, Accuracy::Full)
+        self.product(x, y, Some(1.0))
     }
 
     fn apply_to_share(&self, share: f64, x: &[f64], y: &mut [f64]) -> Result<()> {
-        self.product(x, y, Accuracy::Share(share))
+        self.product(x, y, Some(share))
     }
 
     fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        self.product(x, y, Accuracy::OfFactors)
+        self.product(x, y, None)
     }
 
     fn has_approximation(&self) -> bool {
