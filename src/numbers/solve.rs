@@ -2,6 +2,8 @@
 
 /// Amplitudes of motions with negative stiffness that differ by less have settled.
 pub const SETTLED: f64 = 1e-11;
+/// Part of the energy norm of the forces that jumps between pieces may have, in units of the limit of equilibrium.
+pub const JUMPS: f64 = 0.3;
 /// Factor over all demands, loads and what they cause, from which a motion proves that no answer exists. `tests/proofs`.
 pub const BEYOND: f64 = 1e6;
 /// Minimum of the search for a contradiction, relative to 1, that is looked into: the square of 1 / 1e3.

@@ -20,6 +20,10 @@ pub struct Limits {
 pub trait AcceptanceTest {
     /// Scale of the gaps at the point x with multiplier alpha.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64>;
+    /// Part of the energy norm (x'A x)^1/2 that the residual of an answer that passes may have, no unit; 0 if that is not known.
+    fn share_of_energy(&self) -> f64 {
+        0.0
+    }
     /// Whether the answer recovered from (x, alpha) passes its certificate.
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool>;
     /// Ratio of the violation to its limit for the last point refused; not known if the test does not compute it.

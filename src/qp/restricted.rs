@@ -149,6 +149,10 @@ impl AcceptanceTest for Judged<'_> {
         self.whole.scale(&self.on.spread(x), alpha)
     }
 
+    fn share_of_energy(&self) -> f64 {
+        self.whole.share_of_energy()
+    }
+
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         self.whole.accepts(&self.on.spread(x), alpha)
     }

@@ -8,7 +8,7 @@ use crate::body::Distributed;
 use crate::certificate::Judgement;
 use crate::error::{Kind, Result};
 use crate::linalg::vector::norm;
-use crate::numbers::solve::SETTLED;
+use crate::numbers::solve::{JUMPS, SETTLED};
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
 use crate::qp::{AcceptanceTest, Effort, Mended, Rung, Solution, Verdict};
@@ -137,6 +137,13 @@ impl AcceptanceTest for Certifier<'_> {
         let demanded = gaps.iter().zip(bounded).map(|(c, bounded)| if *bounded { c.min(0.0) } else { *c });
         let reach = norm(&distances) + norm(&demanded.collect::<Vec<_>>());
         Ok(norm(&distances) + norm(&gaps).min(reach))
+    }
+
+    /// Where bodies are cut, jumps between pieces are the largest error: averaged they leave forces without balance, which the
+    /// certificate relates to all forces on the body, all in the energy norm.
+    fn share_of_energy(&self) -> f64 {
+        let recovery = &self.recovery;
+        recovery.ready.whole().map_or(0.0, |_| JUMPS * recovery.data.limit)
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {

@@ -26,6 +26,22 @@ fn a_body_that_is_cut_has_the_answer_of_the_whole_one() {
     }
 }
 
+/// One step fewer would hardly do: the worst entry of the certificate ends within a factor of 20 of its limit.
+#[test]
+fn cut_bodies_are_solved_as_far_as_the_certificate_asks() {
+    let model = blocks(8);
+    let solve = |certificate: f64| {
+        let mut problem = model.by_elements(27, true).unwrap();
+        problem.set_f64("certificate_tolerance", certificate).unwrap();
+        solved(&mut problem);
+        let report = problem.report().unwrap();
+        assert!(report.certificate.worst() > 0.05, "{certificate:e}: {:e}", report.certificate.worst());
+        report.counts.products
+    };
+    let products = [1e-4, 1e-6, 1e-8].map(solve);
+    assert!(products.windows(2).all(|two| two[0] + 4 <= two[1]), "{products:?}");
+}
+
 #[test]
 fn the_host_sees_its_bodies_and_not_their_pieces() {
     let model = blocks(5);

@@ -87,6 +87,7 @@ fn factors_in_single_precision_take_hardly_more_products_where_layers_are_of_ver
         let [single, double] = ["implicit", "explicit"].map(|operator| {
             let mut problem = model.by_elements(27, true).unwrap();
             problem.set_str("dual_operator", operator).unwrap();
+            problem.set_f64("certificate_tolerance", 1e-8).unwrap();
             solved(&mut problem);
             problem.report().unwrap().counts.products
         });

@@ -109,7 +109,7 @@ fn proportioning(
 ) -> Result<Solution> {
     // S7
     let scale = judge.scale(&it.x, &it.alpha)?;
-    let stop = Stop::new(limits.tolerance * scale);
+    let stop = Stop::new(limits.tolerance * scale, judge.share_of_energy());
     let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
     it.counts.coarse_solves = it.coarse.solves;
     it.counts.coarse_factorisations = it.coarse.factorisations;
@@ -131,7 +131,7 @@ fn run(
     let mut efforts: &[Effort] = &[Effort::FewSets, Effort::Interior];
     loop {
         // P1 of docs/method.md: the stop
-        let small = stop.residual + stop.noise * it.noise();
+        let small = stop.small(it);
         it.refresh_if_stale(small)?;
         if it.split.norm() <= small || stop.plateau(it) {
             it.rebalance()?;

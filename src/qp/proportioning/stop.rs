@@ -13,9 +13,11 @@ const PLATEAU: usize = 50;
 
 /// Decides whether the residual is small enough, or cannot be reduced further.
 pub struct Stop {
-    pub residual: f64,
+    residual: f64,
+    /// Part of the energy norm of x that the residual may have, no unit.
+    share: f64,
     /// Factor on the allowance for rounding.
-    pub noise: f64,
+    noise: f64,
     tightenings: usize,
     /// Violation reported by the last refusal.
     missed: Option<f64>,
@@ -26,9 +28,10 @@ pub struct Stop {
 }
 
 impl Stop {
-    pub fn new(residual: f64) -> Self {
+    pub fn new(residual: f64, share: f64) -> Self {
         Self {
             residual,
+            share,
             noise: 1.0,
             tightenings: 0,
             missed: None,
@@ -36,6 +39,11 @@ impl Stop {
             met: 0,
             face: Vec::new(),
         }
+    }
+
+    /// P1: eps_x.
+    pub fn small(&self, it: &Iterate) -> f64 {
+        self.residual.max(self.share * it.qp.energy(&it.x, &it.g)) + self.noise * it.noise()
     }
 
     /// P1, the plateau: the residual of this face has not been halved during more conjugate gradient steps than exact
@@ -62,7 +70,7 @@ impl Stop {
         let missed = missed.filter(|_| Rung::TightenBy.is_tried());
         if let Some(missed) = missed {
             self.tightenings += 1;
-            self.residual *= (BY_MISSED / missed).min(BY_MISSED);
+            self.demand((BY_MISSED / missed).min(BY_MISSED));
         }
         missed.is_some()
     }
@@ -77,8 +85,13 @@ impl Stop {
             return Some(Verdict::Inaccurate);
         }
         self.tightenings += 1;
-        self.residual *= TIGHTER;
+        self.demand(TIGHTER);
         self.noise *= TIGHTER;
         None
+    }
+
+    fn demand(&mut self, part: f64) {
+        self.residual *= part;
+        self.share *= part;
     }
 }
