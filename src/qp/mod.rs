@@ -79,12 +79,6 @@ impl Qp<'_> {
         left
     }
 
-    /// `(x'A x)^1/2`, the energy norm; g = A x - b.
-    pub fn energy(&self, x: &[f64], g: &[f64]) -> f64 {
-        let image = g.iter().zip(self.b).map(|(g, b)| g + b);
-        x.iter().zip(image).map(|(x, image)| x * image).sum::<f64>().max(0.0).sqrt()
-    }
-
     /// (21): bounded rows of x at zero.
     pub fn at_bound(&self, x: &[f64]) -> Vec<bool> {
         gradient::at_bound(self.bounded, x)

@@ -67,7 +67,6 @@ impl<'a> Run<'a, '_> {
         (first, alpha): (Projected, Vec<f64>),
         judge: &mut dyn AcceptanceTest,
     ) -> Result<Verdict> {
-        self.share = judge.share_of_energy();
         let start = self.begun(limits.tolerance, &first, &alpha)?;
         self.last.clone_from(&start);
         if !(start.merit.is_finite() && self.small.is_finite()) {
@@ -91,7 +90,6 @@ impl<'a> Run<'a, '_> {
                 }
                 if met && Rung::Tighter.is_tried() {
                     self.small *= TIGHTER;
-                    self.share *= TIGHTER;
                     now = self.newton(answer)?;
                     continue;
                 }

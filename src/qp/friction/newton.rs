@@ -40,8 +40,6 @@ pub struct Run<'a, 'w> {
     /// `|P d|`, to which gaps are relative, and the merit that counts as zero.
     pub scale: f64,
     pub small: f64,
-    /// Part of the energy norm of x that counts as zero, no unit.
-    pub share: f64,
     /// The best point so far.
     pub last: Point,
     /// A slide that weak supports have shown.
@@ -131,7 +129,7 @@ impl Run<'_, '_> {
 
     /// The laws are satisfied; false for NaN.
     pub fn is_met(&self, now: &Point) -> bool {
-        now.merit <= self.small.max(self.share * self.problem.qp.energy(&now.x, &now.g))
+        now.merit <= self.small
     }
 
     /// Stores the best point, for the case that no answer is found.

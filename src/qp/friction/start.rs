@@ -31,7 +31,6 @@ impl<'a, 'w> Run<'a, 'w> {
             limit: limits.products,
             scale: 0.0,
             small: 0.0,
-            share: 0.0,
             last: Point::default(),
             slide: None,
             problem,

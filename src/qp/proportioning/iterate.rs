@@ -222,6 +222,12 @@ impl<'a> Iterate<'a> {
         64.0 * f64::EPSILON * (given.sqrt() + f64::sqrt(image) + f64::sqrt(coarse))
     }
 
+    /// `(x'A x)^1/2`, the energy norm
+    pub fn energy(&self) -> f64 {
+        let image = self.g.iter().zip(self.qp.b).map(|(g, b)| g + b);
+        self.x.iter().zip(image).map(|(x, image)| x * image).sum::<f64>().max(0.0).sqrt()
+    }
+
     /// `theta(x) = 1/2 x'A x - b'x`
     pub fn theta(&self) -> f64 {
         0.5 * self.x.iter().zip(self.g.iter().zip(self.qp.b)).map(|(x, (g, b))| x * (g - b)).sum::<f64>()

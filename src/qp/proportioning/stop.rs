@@ -43,7 +43,7 @@ impl Stop {
 
     /// P1: eps_x.
     pub fn small(&self, it: &Iterate) -> f64 {
-        self.residual.max(self.share * it.qp.energy(&it.x, &it.g)) + self.noise * it.noise()
+        self.residual.max(self.share * it.energy()) + self.noise * it.noise()
     }
 
     /// P1, the plateau: the residual of this face has not been halved during more conjugate gradient steps than exact
