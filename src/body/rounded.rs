@@ -13,7 +13,7 @@ use crate::linalg::cholesky::inverse_form;
 use crate::linalg::random::Random;
 use crate::linalg::vector::{axpy, power_of_two_below, weighted_norm};
 use crate::linalg::{Cholesky, Csr, Multiple, Packed};
-use crate::numbers::body::{CONVERGED, REACHED_ROUNDING, SHARE, TINY};
+use crate::numbers::body::{CONVERGED, REACHED_ROUNDING, ROUNDINGS, SHARE, TINY};
 use crate::platform::memory::{copied, zeros};
 use crate::platform::slabs::Slabs;
 use crate::ranks::wire_enum;
@@ -72,7 +72,7 @@ impl Rounded {
     }
 
     fn rounding(softness: f64) -> f64 {
-        f64::EPSILON * (1.0 / softness).max(4.0)
+        ROUNDINGS * f64::EPSILON * (1.0 / softness).max(4.0)
     }
 
     /// A factor that was computed in single precision, and the softness of a random load. None if K, whose null space may not be
@@ -139,6 +139,9 @@ impl Rounded {
 
     /// `x <- near(b)`, b in x on entry, improved.
     fn refined(&self, share: f64, x: &mut [f64], near: impl Fn(&mut [f64]) -> Result<()>) -> Result<f64> {
+        if x.iter().all(|x| *x == 0.0) {
+            return Ok(0.0);
+        }
         let load = copied(x, WHAT)?;
         near(x)?;
         self.improved(share, &load, x, near)

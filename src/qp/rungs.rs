@@ -53,6 +53,7 @@ rungs! {
     DenseSupports: "dense supports", "F7: weak supports with dense systems";
     Tighter: "tighter laws", "F8: a smaller merit for a refused point";
     Corrected: "corrected", "F8: a refused point is corrected by the data of the host";
+    RowsClosed: "rows closed", "S13.4: conjugate gradients close rows that the factors of a face left out";
 }
 
 const COUNT: usize = Rung::ALL.len();
