@@ -13,7 +13,8 @@ include/feti_contact.h describes every C function; `feti_contact._raw` and `_lib
 
 from ._arrays import outward
 from ._library import LIBRARY, FetiError, FetiWarning
-from ._records import BodyInfo, Certificate, Findings, Info, PairInfo, Progress
+from ._methods import BodyInfo, Certificate, Findings, PairInfo, Progress
+from ._records import Info
 from .parts import Body, Pair, Surface
 from .problem import Problem
 

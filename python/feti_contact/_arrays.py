@@ -1,6 +1,7 @@
 """Arrays and matrices as the library takes them: what fits is passed as it is, what loses digits is refused."""
 
 from ctypes import byref, c_int64
+from typing import Any, Optional
 
 import numpy as np
 
@@ -20,12 +21,12 @@ def integers(x, name, shape=None, dtype=None):
     a = np.asarray(x)
     if a.size == 0 and a.dtype == np.float64:
         a = a.astype(np.int64)
-    if a.dtype.kind not in "iu" or a.dtype == np.uint64 and a.size and a.max() > np.iinfo(np.int64).max:
+    if a.dtype.kind not in "iu":
         raise TypeError(f"{name}: numbers of type {a.dtype}, not integers")
-    if dtype is np.int32 and a.size and not -(2**31) <= a.min() <= a.max() < 2**31:
-        raise OverflowError(f"{name}: numbers from {a.min()} to {a.max()} do not fit into 32 bits")
-    own = a.dtype.newbyteorder("=") if a.dtype.kind == "i" and a.dtype.itemsize in (4, 8) else np.dtype(np.int64)
-    return np.ascontiguousarray(fitting(a, name, shape), dtype=dtype or own)
+    dtype = np.dtype(dtype or (a.dtype.newbyteorder("=") if a.dtype.kind == "i" and a.dtype.itemsize in (4, 8) else np.int64))
+    if a.size and not np.can_cast(a.dtype, dtype) and not np.iinfo(dtype).min <= int(a.min()) <= int(a.max()) <= np.iinfo(dtype).max:
+        raise OverflowError(f"{name}: numbers from {a.min()} to {a.max()} do not fit into {8 * dtype.itemsize} bits")
+    return np.ascontiguousarray(fitting(a, name, shape), dtype=dtype)
 
 
 def together(*arrays):
@@ -48,24 +49,31 @@ def at(a):
 
 
 def filled(shape, name, *arguments, dtype=np.float64):
-    """An array of this shape that feti_NAME fills, its last argument."""
-    out = np.empty(shape, dtype)
+    """An array of this shape that feti_NAME fills, its last argument; 0 where it writes nothing."""
+    out = np.zeros(shape, dtype)
     call(name, *arguments, at(out))
     return out
 
 
-def counted(name, *arguments):
-    """The number that feti_NAME writes to its last argument."""
-    out = c_int64()
-    call(name, *arguments, byref(out))
-    return out.value
+def written(name, *arguments, of=(c_int64,), by=call):
+    """What feti_NAME writes to its last arguments, of these types: a number or a report, or a tuple of several."""
+    out = [kind() for kind in of]
+    by(name, *arguments, *map(byref, out))
+    values = tuple(getattr(x, "value", x) for x in out)
+    return values if len(values) > 1 else values[0]
 
 
-def reported(kind, name, *arguments):
-    """The report of this kind that feti_NAME writes to its last argument."""
-    out = kind()
-    call(name, *arguments, byref(out))
-    return out
+def one_of(table, key, name):
+    if key not in table:
+        raise ValueError(f"{name}: {key!r}, not one of {', '.join(map(repr, table))}")
+    return table[key]
+
+
+def optional(x: Any, name: str, shape) -> Optional[np.ndarray]:
+    """Numbers of this shape, also from one number for all; None remains None."""
+    if x is None:
+        return None
+    return numbers(np.full(shape, float(x)) if np.ndim(x) == 0 and np.asarray(x).dtype.kind in "fiu" else x, name, shape)
 
 
 def is_sparse(matrix):
@@ -116,19 +124,18 @@ def constraint_rows(rows, name):
     if not isinstance(rows, dict):
         ptr, col, val, m, _ = rows_of(rows, name)
         return m, ptr, None, col, val
-    if not rows:
-        raise ValueError(f"{name}: no body")
     parts = [(int(body), *rows_of(matrix, f"{name}[{int(body)}]")) for body, matrix in rows.items()]
-    m = parts[0][4]
-    if any(part[4] != m for part in parts):
-        raise ValueError(f"{name}: the matrices of the bodies have {[part[4] for part in parts]} rows")
-    row = np.concatenate([np.repeat(np.arange(m), np.diff(ptr)) for _, ptr, _, _, _, _ in parts])
+    heights = [part[4] for part in parts]
+    if len(set(heights)) != 1:
+        raise ValueError(f"{name}: the matrices of the bodies have {heights} rows")
+    m, entries = heights[0], []
+    for body, ptr, col, val, *_ in parts:
+        end = ptr[-1]
+        entries.append((np.repeat(np.arange(m), np.diff(ptr)), np.full(end, body, dtype=np.int64), col[:end].astype(np.int64), val[:end]))
+    row, body, dof, val = map(np.concatenate, zip(*entries))
     order = np.argsort(row, kind="stable")
-    body = np.concatenate([np.full(ptr[-1], body, dtype=np.int64) for body, ptr, *_ in parts])[order]
-    dof = np.concatenate([col[: ptr[-1]] for _, ptr, col, *_ in parts])[order].astype(np.int64)
-    val = np.concatenate([val[: ptr[-1]] for _, ptr, _, val, _, _ in parts])[order]
     ptr = np.concatenate([[0], np.cumsum(np.bincount(row, minlength=m))])
-    return m, ptr, body, dof, val
+    return m, ptr, body[order], dof[order], val[order]
 
 
 def outward(faces, x, inside):

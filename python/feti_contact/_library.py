@@ -2,8 +2,8 @@
 
 import ctypes
 import os
-import queue
 import threading
+from concurrent.futures import Future
 from pathlib import Path
 
 from . import _raw
@@ -47,13 +47,7 @@ class FetiError(Exception):
         self.value, self.limit = (number(detail.value), number(detail.limit)) if detail else (None, None)
 
     def __reduce__(self):
-        return _rebuilt, (self.status, str(self), self.__dict__)
-
-
-def _rebuilt(status, text, fields):
-    error = FetiError(status, text)
-    error.__dict__.update(fields)
-    return error
+        return FetiError, (self.status, str(self)), self.__dict__
 
 
 class FetiWarning(UserWarning):
@@ -90,30 +84,26 @@ def interruptible(work, cancel):
     Python runs signal handlers on the main thread alone, and never inside a call of C: there `work` has a thread of its own."""
     if threading.current_thread() is not threading.main_thread():
         return work()
-    outcome, stopped = queue.SimpleQueue(), []
+    outcome, stopped = Future(), []
 
     def run():
         try:
-            outcome.put((None if stopped else work(), None))
+            outcome.set_result(None if stopped else work())
         except BaseException as error:  # handed over
-            outcome.put((None, error))
+            outcome.set_exception(error)
 
     worker = threading.Thread(target=run, name="feti_contact", daemon=True)
     try:
         worker.start()
-        result, error = outcome.get()
+        return outcome.result()
     except BaseException:
         stopped.append(True)
-        while worker.is_alive():  # the arrays in use must not go, however often Ctrl-C is pressed
+        while worker.is_alive() and not outcome.done():  # the arrays in use must not go, however often Ctrl-C is pressed
             try:
                 cancel()
                 worker.join(0.02)
             except BaseException:
                 pass
         raise
-    if error is not None:
-        try:
-            raise error
-        finally:
-            del error  # its traceback has this frame
-    return result
+    finally:
+        del outcome  # the traceback of its error has this frame

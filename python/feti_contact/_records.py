@@ -40,10 +40,6 @@ class Record(ctypes.Structure):
         return cls.from_buffer_copy(data)
 
 
-def record(name, raw, doc):
-    return type(name, (Record,), {"_fields_": raw._fields_, "__doc__": doc, "__module__": __name__})
-
-
 class Info(Record):
     """What a solve did and how good the answer is: feti_info. `worst` <= 1: the certificate passes. Truth value: the answer is complete."""
 
@@ -56,10 +52,3 @@ class Info(Record):
 
     def __bool__(self):
         return self.status == 0
-
-
-Certificate = record("Certificate", _raw.feti_certificate, "Verdict on an answer, with the worst body or row of each entry: feti_certificate.")
-Findings = record("Findings", _raw.feti_findings, "Why there is no answer, or what is unusual about the problem: feti_findings.")
-BodyInfo = record("BodyInfo", _raw.feti_body_facts, "Facts on a body and on its last setup: feti_body_facts.")
-PairInfo = record("PairInfo", _raw.feti_pair_facts, "What a pair carries, where it is closed and where it overlaps: feti_pair_facts.")
-Progress = record("Progress", _raw.feti_progress, "Progress of a setup or a solve: feti_progress.")

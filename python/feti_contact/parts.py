@@ -3,62 +3,46 @@
 from __future__ import annotations
 
 from ctypes import byref, c_int64
-from typing import Any, Callable, Optional
+from dataclasses import dataclass
+from typing import Any, Callable, Tuple
 
 import numpy as np
 
 from . import _raw
-from ._arrays import as_csr, at, compressed, filled, fitting, integers, is_sparse, listed, numbers, reported, together
+from ._arrays import as_csr, at, compressed, filled, fitting, integers, is_sparse, listed, numbers, one_of, together
 from ._library import call
-from ._records import BodyInfo, PairInfo
+from ._methods import FIELDS, MOTIONS, STORAGE, BodyCalls, PairCalls
 
-STORAGE = {"full": _raw.FETI_FULL, "lower": _raw.FETI_LOWER, "upper": _raw.FETI_UPPER}
 TURNED = {"full": "full", "lower": "upper", "upper": "lower"}
-MOTIONS = {"exact": _raw.FETI_EXACT, "candidates": _raw.FETI_CANDIDATES, "soft": _raw.FETI_SOFT}
-KINDS = {"all": 0, "contact": _raw.FETI_INEQUALITY, "equality": _raw.FETI_EQUALITY, "tangential": _raw.FETI_TANGENTIAL}
-METHODS = {"node_to_face": _raw.FETI_NODE_TO_FACE, "mortar": _raw.FETI_MORTAR}
 # (dim, nodes of a face): shape of the library
 SHAPES = {(dim, 1): _raw.FETI_POINT for dim in (2, 3)}
 SHAPES.update({(2, 2): _raw.FETI_LINE2, (2, 3): _raw.FETI_LINE3, (3, 3): _raw.FETI_TRI3, (3, 6): _raw.FETI_TRI6})
 SHAPES.update({(3, 4): _raw.FETI_QUAD4, (3, 8): _raw.FETI_QUAD8, (3, 9): _raw.FETI_QUAD9})
-FIELDS = {name: getattr(_raw, f"FETI_{name.upper()}") for name in ("force", "pressure", "shear", "gap", "slip", "area", "normal", "closed")}
 
 
-def one_of(table, key, name):
-    if key not in table:
-        raise ValueError(f"{name}: {key!r}, not one of {', '.join(map(repr, table))}")
-    return table[key]
-
-
+@dataclass(frozen=True, repr=False)
 class Part:
     """`int(part)` is its number in the problem."""
 
-    def __init__(self, problem, number: int):
-        self.problem, self.number = problem, number
+    problem: Any
+    number: int
 
     def __index__(self):
         return self.number
 
-    def __eq__(self, other):
-        return type(other) is type(self) and (other.problem, other.number) == (self.problem, self.number)
-
-    def __hash__(self):
-        return hash((id(self.problem), self.number))
-
     @property
-    def _place(self):
-        return self.problem._handle, self.number
+    def _handle(self):
+        return self.problem._handle
 
     def _call(self, name, *arguments):
-        return call(name, *self._place, *arguments)
+        return call(name, self._handle, self.number, *arguments)
 
 
-class Body(Part):
+@dataclass(frozen=True, repr=False)
+class Body(BodyCalls, Part):
     """A body with `n` unknowns. f, u, r are vectors (n); force and length are in units of the host."""
 
-    def __init__(self, problem, number, n):
-        super().__init__(problem, number)
-        self.n = n
+    n: int
 
     def __repr__(self):
         return f"<Body {self.number}: {self.n} unknowns>"
@@ -86,7 +70,7 @@ class Body(Part):
             lent = [] if copy else [val, col][: self.info.borrowed]
         for array in lent:
             array.flags.writeable = False
-        self.problem._keep("K", self.number, lent)
+        self.problem._kept[self.number] = lent
 
     def skyline(self, ptr, values, diagonal=None, up: bool = False) -> None:
         """Gives K by its profile: column j of the upper triangle has values[ptr[j]:ptr[j + 1]], downwards or (up) from the diagonal upwards.
@@ -98,14 +82,14 @@ class Body(Part):
             raise ValueError(f"ptr ends with {ptr[-1]}, but there are {values.size} values")
         diagonal = None if diagonal is None else numbers(diagonal, "diagonal", (self.n,))
         self._call(f"body_stiffness_skyline_{kind}", self.n, at(diagonal), at(ptr), at(values), 0, int(up), _raw.FETI_COPY)
-        self.problem._keep("K", self.number, [])
+        self.problem._kept.pop(self.number, None)
 
     def values(self, K: Any) -> None:
         """Gives new values of K in the pattern and order of the first: a matrix of the same form, or its values alone. The analysis is kept."""
         if is_sparse(K) or np.ndim(K) == 1:
             val = numbers(K.data if is_sparse(K) else K, "values", (None,))
             self._call("body_values", val.size, at(val))
-            kept = self.problem._kept.get(("K", self.number))
+            kept = self.problem._kept.get(self.number)
             if kept:  # the values of a matrix that is lent are replaced by these
                 val.flags.writeable = False
                 kept[0] = val
@@ -130,16 +114,16 @@ class Body(Part):
         self._call("body_mesh_i64", len(dofs), at(ptr), at(dof), 0)
         ke = np.concatenate([m.ravel() for m in ke]) if ke else np.empty(0)
         self._call("body_elements", 0, len(dofs), at(ke), STORAGE[storage])
-        self.problem._keep("K", self.number, [])
+        self.problem._kept.pop(self.number, None)
 
     def operator(self, diagonal, kplus: Callable, k: Callable, concurrent: bool = False) -> None:
         """Gives K by functions: k(X) and kplus(X) return K X and K+ X for X (n, columns). The null space must be given, too.
 
         diagonal (n): that of K. concurrent: they may run on several threads at once. Their exceptions come out of the solve."""
         diagonal = numbers(diagonal, "diagonal", (self.n,))
-        functions = [_raw.feti_operator_fn(self._applied(f, self.problem._catch)) for f in (kplus, k)]
+        functions = [_raw.feti_operator_fn(self._applied(f, self.problem._calls.catch)) for f in (kplus, k)]
         self._call("body_operator", self.n, at(diagonal), *functions, int(concurrent), None)
-        self.problem._keep("K", self.number, functions)
+        self.problem._kept[self.number] = functions
 
     @staticmethod
     def _applied(function, catch):
@@ -154,11 +138,6 @@ class Body(Part):
             return catch(work, -1)
 
         return run
-
-    def load(self, f) -> None:
-        """Gives the load f (n), force; another call replaces it."""
-        f = numbers(f, "load", (self.n,))
-        self._call("body_load", self.n, at(f))
 
     def null_space(self, R: Any, kind: str = "exact") -> None:
         """Gives the motions R (n, r) or (n) that K does not resist; None: there are none. kind: "exact", "candidates" or "soft" (weakly resisted)."""
@@ -188,16 +167,7 @@ class Body(Part):
         """Gives the host's number of each unknown (n), from 0: for rows of the whole model and for arrays over all bodies."""
         number = integers(number, "number", (self.n,), np.int64)
         self._call("body_numbering_i64", self.n, at(number), 0)
-        self.problem._widen(int(number.max()) + 1)
-
-    def displacement(self) -> np.ndarray:
-        """u (n) of the last answer, length."""
-        return filled(self.n, "displacement", *self._place, self.n)
-
-    def reaction(self, kind: str = "all") -> np.ndarray:
-        """Force of the rows on the body (n): K u = f + r; of one kind: "contact", "equality", "tangential"."""
-        handle, number = self._place
-        return filled(self.n, "reaction", handle, one_of(KINDS, kind, "kind"), number, self.n)
+        self.problem._width = max(self.problem._width or 0, int(number.max()) + 1)
 
     def motions(self) -> np.ndarray:
         """The null space that the library uses, (n, r); makes a setup if one is due."""
@@ -207,39 +177,16 @@ class Body(Part):
         self._call("body_null_space_get", self.n, byref(r), at(R), self.n)
         return R.T
 
-    def amplitudes(self) -> np.ndarray:
-        """Amplitudes (r) of the motions in the last answer."""
-        r = self.motions().shape[1]
-        return filled(r, "amplitudes", *self._place, r)
-
-    def held_forces(self, n: int) -> np.ndarray:
-        """Forces on held unknowns 0 to n - 1 of a body given by elements: K_hf u."""
-        return filled(n, "body_held_forces", *self._place, n)
-
-    def pieces(self) -> np.ndarray:
-        """Piece of each unknown (n), from 0; zeros for a body that is not cut."""
-        return filled(self.n, "body_pieces", *self._place, self.n, dtype=np.int64)
-
-    def escape(self) -> np.ndarray:
-        """Motion (n) of the body that moves away, after FETI_LOAD_NOT_HELD, FETI_SLIDES or FETI_INDEFINITE; largest entry of all bodies 1."""
-        return filled(self.n, "diagnosis_motion", *self._place, self.n)
-
-    @property
-    def info(self) -> BodyInfo:
-        """Sizes, memory, source of the null space, estimated error of the forces."""
-        return reported(BodyInfo, "body_info", *self._place)
-
     def surface(self, x, dof=None, faces=()) -> Surface:
         """A surface over nodes of the body: see Problem.add_surface."""
         return self.problem.add_surface(x, dof, faces, body=self)
 
 
+@dataclass(frozen=True, repr=False)
 class Surface(Part):
     """A surface with its positions x (nodes, dim), or a rigid shape."""
 
-    def __init__(self, problem, number, shape):
-        super().__init__(problem, number)
-        self.shape = shape
+    shape: Tuple[int, ...]
 
     def __repr__(self):
         return f"<Surface {self.number}: {'%d nodes in %d dimensions' % self.shape if len(self.shape) == 2 else 'rigid'}>"
@@ -250,12 +197,12 @@ class Surface(Part):
         self._call("surface_move", at(x), x.shape[-1])
 
 
-class Pair(Part):
+@dataclass(frozen=True, repr=False)
+class Pair(PairCalls, Part):
     """A pair of surfaces; its rows `first` to `first + rows - 1` are contact rows, of a tie equality rows."""
 
-    def __init__(self, problem, number, slave, first):
-        super().__init__(problem, number)
-        self.slave, self.first = slave, first
+    slave: Surface
+    first: int
 
     def __repr__(self):
         return f"<Pair {self.number}: {self.info!r}>"
@@ -272,16 +219,4 @@ class Pair(Part):
         """force, pressure, gap, area, closed (nodes) or shear, slip, normal (nodes, dim) at the nodes of the slave; 0 without a partner."""
         field = one_of(FIELDS, name, "field")
         shape = self.slave.shape if name in ("shear", "slip", "normal") else self.slave.shape[:1]
-        return filled(shape, "pair_field", *self._place, field, int(np.prod(shape)))
-
-    @property
-    def info(self) -> PairInfo:
-        """Resultant, counts of nodes, largest pressure, overlap."""
-        return reported(PairInfo, "pair_info", *self._place)
-
-
-def optional(x: Any, name: str, shape) -> Optional[np.ndarray]:
-    """Numbers of this shape, also from one number for all; None remains None."""
-    if x is None:
-        return None
-    return numbers(np.full(shape, float(x)) if np.ndim(x) == 0 and np.asarray(x).dtype.kind in "fiu" else x, name, shape)
+        return filled(shape, "pair_field", self._handle, self.number, field, int(np.prod(shape)))

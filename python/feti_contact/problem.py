@@ -4,35 +4,30 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import functools
 import logging
 import operator
 import os
 import tempfile
 import threading
 import warnings
-from ctypes import byref, c_double, c_int32, c_int64, c_void_p
+from ctypes import byref, c_double, c_int64, c_void_p
+from pathlib import Path
 from typing import Any, Dict, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _raw
-from ._arrays import at, constraint_rows, counted, filled, integers, listed, numbers, reported, rows_of, together
+from ._arrays import at, constraint_rows, filled, integers, listed, numbers, one_of, optional, rows_of, together, written
 from ._library import LIBRARY, FetiError, FetiWarning, call, interruptible
-from ._records import Certificate, Findings, Info, Progress
-from .parts import KINDS, METHODS, SHAPES, Body, Pair, Surface, one_of, optional
+from ._methods import KINDS, METHODS, BodyInfo, Certificate, Option, Phase, ProblemCalls, Progress
+from ._records import Info
+from .parts import SHAPES, Body, Pair, Surface
 
 LOG = logging.getLogger("feti_contact")
 FOUND = object()  # null_space: the library finds it
 
-
-def _option_types():
-    option = _raw.feti_option(struct_size=ctypes.sizeof(_raw.feti_option))
-    for k in range(LIBRARY.feti_option_count()):
-        LIBRARY.feti_option_at(k, byref(option))
-        yield option.name.decode(), option.type
-
-
-OPTIONS = dict(_option_types())
+OPTIONS = {option.name.decode(): option.type for option in (written("option_at", k, of=(Option,)) for k in range(LIBRARY.feti_option_count()))}
 
 
 class _Calls:
@@ -54,7 +49,7 @@ class _Calls:
         LOG.log({1: logging.INFO, 2: logging.DEBUG}.get(level, 5), text.decode(errors="replace"))
 
 
-class Problem:
+class Problem(ProblemCalls, contextlib.AbstractContextManager):
     """Bodies, rows, options and the last answer. One thread at a time; several may use different problems. Keywords are options (docs/options.md).
 
     `with` or close() frees its memory at once, otherwise the garbage collection does; every call on a closed problem is a FetiError."""
@@ -76,9 +71,6 @@ class Problem:
         if getattr(self, "_handle", None):
             LIBRARY.feti_problem_destroy(byref(self._handle))
 
-    def __enter__(self):
-        return self
-
     def __exit__(self, *_):
         self.close()
 
@@ -89,10 +81,9 @@ class Problem:
 
     def __reduce__(self):
         with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "problem.feti")
+            path = Path(folder, "problem.feti")
             self.write(path)
-            with open(path, "rb") as file:
-                return _unpickled, (file.read(), self._width)
+            return _unpickled, (path.read_bytes(), self._width)
 
     def write(self, path: Union[str, os.PathLike]) -> None:
         """Writes all input to a problem file; not the answer, surfaces (their rows are written), saved states and functions."""
@@ -105,30 +96,8 @@ class Problem:
         call("problem_read", p._handle, os.fsencode(path))
         p._width = width
         for number in range(p._counts()[0]):
-            body = Body(p, number, 0)
-            body.n = body.info.unknowns
-            p._bodies.append(body)
+            p._bodies.append(Body(p, number, written("body_info", p._handle, number, of=(BodyInfo,)).unknowns))
         return p
-
-    def _keep(self, what, number, objects):
-        self._kept[what, number] = objects
-
-    def _widen(self, n):
-        self._width = max(self._width or 0, n)
-
-    @property
-    def _catch(self):
-        return self._calls.catch
-
-    def _counts(self):
-        four = [c_int64() for _ in range(4)]
-        call("counts", self._handle, *map(byref, four))
-        return [n.value for n in four]
-
-    def _nodes(self) -> Tuple[int, int]:
-        nodes, dim = c_int64(), c_int32()
-        call("friction_counts", self._handle, byref(nodes), byref(dim))
-        return nodes.value, dim.value
 
     def _size(self, kind):
         return self._counts()[1 + KINDS[kind]] if one_of(KINDS, kind, "kind") in (1, 2) else int(np.prod(self._nodes()))
@@ -142,7 +111,7 @@ class Problem:
         try:
             call("on_log", self._handle, calls.on_log if level else _raw.feti_log_fn(), level, None)
             call("on_progress", self._handle, calls.on_progress if watch else _raw.feti_progress_fn(), None)
-            return interruptible(lambda: call(name, self._handle, *arguments), lambda: LIBRARY.feti_cancel(self._handle))
+            return interruptible(lambda: call(name, *arguments), lambda: LIBRARY.feti_cancel(self._handle))
         except FetiError as failed:
             if calls.error is not None:
                 raise calls.error from failed
@@ -165,13 +134,11 @@ class Problem:
 
     def get(self, name: str) -> Union[int, float, str]:
         """The present value of an option."""
-        key, kind = name.encode(), OPTIONS.get(name)
-        if kind in (_raw.FETI_OPTION_F64, _raw.FETI_OPTION_I64):
-            value = (c_double if kind == _raw.FETI_OPTION_F64 else c_int64)()
-            call("get_f64" if kind == _raw.FETI_OPTION_F64 else "get_i64", self._handle, key, byref(value))
-            return value.value
-        size, text = c_int64(), ctypes.create_string_buffer(1000)
-        call("get_str", self._handle, key, text, len(text), byref(size))
+        of = {_raw.FETI_OPTION_F64: c_double, _raw.FETI_OPTION_I64: c_int64}.get(OPTIONS.get(name))
+        if of:
+            return written("get_f64" if of is c_double else "get_i64", self._handle, name.encode(), of=(of,))
+        text = ctypes.create_string_buffer(1000)
+        written("get_str", self._handle, name.encode(), text, len(text))
         return text.value.decode()
 
     # ---- bodies
@@ -186,7 +153,7 @@ class Problem:
         n = K.shape[0] if n is None and K is not None else n
         if n is None:
             raise TypeError("add_body needs K or n")
-        body = Body(self, counted("body_add", self._handle, operator.index(n)), n)
+        body = Body(self, written("body_add", self._handle, operator.index(n)), n)
         self._bodies.append(body)
         if K is not None:
             body.stiffness(K, storage, copy)
@@ -202,11 +169,6 @@ class Problem:
     def bodies(self) -> Tuple[Body, ...]:
         """The bodies in their order."""
         return tuple(self._bodies)
-
-    def load(self, f, n: Optional[int] = None) -> None:
-        """Gives the loads of all bodies (see displacement)."""
-        f = numbers(f, "load", (self._all(n),))
-        call("body_load", self._handle, _raw.FETI_ALL, f.size, at(f))
 
     def dof_table(self, number, terms=None, constant=None) -> None:
         """Names all n unknowns of the host: number (n) in K, below 0: eliminated, u = constant + terms u; terms (n, n) sparse or dense."""
@@ -226,7 +188,7 @@ class Problem:
         m, ptr, body, dof, val = constraint_rows(rows, "rows")
         rhs, compliance = optional(rhs, "right-hand side", (m,)), optional(compliance, "compliance", (m,))
         (ptr, body, dof), ending = together(ptr, body, dof)
-        first = counted(f"rows_add_{ending}", self._handle, KINDS[kind], m, at(ptr), at(body), at(dof), at(val), 0, at(rhs))
+        first = written(f"rows_add_{ending}", self._handle, KINDS[kind], m, at(ptr), at(body), at(dof), at(val), 0, at(rhs))
         if compliance is not None:
             self.set_compliance(kind, compliance, first)
         return range(first, first + m)
@@ -240,11 +202,6 @@ class Problem:
     def add_equality(self, rows: Any, rhs=None, compliance=None) -> range:
         """Equality rows H u = h (supports, ties), as add_contact; rhs: h (m)."""
         return self._add_rows("equality", rows, rhs, compliance)
-
-    def set_rhs(self, kind: str, rhs, first: int = 0) -> None:
-        """Replaces c or h of rows from `first` on. kind: "contact" or "equality"."""
-        rhs = numbers(rhs, "rhs", (None,))
-        call("rows_rhs", self._handle, one_of(KINDS, kind, "kind"), first, rhs.size, at(rhs))
 
     def set_compliance(self, kind: str, inv_k, first: int = 0) -> None:
         """Replaces 1/k of rows from `first` on, length / force; of nodes with friction (kind "tangential") 1/k_t."""
@@ -269,7 +226,7 @@ class Problem:
         law = [optional(x, name, (nodes,)) for x, name in ((coefficient, "coefficient"), (bound, "bound"), (compliance, "compliance"))]
         (contact, ptr, body, dof), ending = together(contact, ptr, body, dof)
         arrays = map(at, (contact, ptr, body, dof, val))
-        first = counted(f"friction_add_{ending}", self._handle, nodes, m // nodes if nodes else 1, *arrays, 0, at(law[0]), at(law[1]))
+        first = written(f"friction_add_{ending}", self._handle, nodes, m // nodes if nodes else 1, *arrays, 0, at(law[0]), at(law[1]))
         if law[2] is not None:
             self.set_compliance("tangential", law[2], first)
         return range(first, first + nodes)
@@ -280,10 +237,6 @@ class Problem:
         nodes = nodes if nodes is not None else sizes[0] if sizes else self._nodes()[0] - first
         law = optional(coefficient, "coefficient", (nodes,)), optional(bound, "bound", (nodes,))
         call("friction_law", self._handle, first, nodes, at(law[0]), at(law[1]))
-
-    def commit_friction(self) -> None:
-        """Ends a load step: slips count from the last answer."""
-        call("friction_commit", self._handle)
 
     # ---- surfaces and pairs
     def add_surface(self, x, dof=None, faces=(), body: Union[Body, int, None] = None) -> Surface:
@@ -296,7 +249,7 @@ class Problem:
         faces = [integers(f, "faces", (None, None), np.int64) for f in ([faces] if isinstance(faces, np.ndarray) else listed(faces, "faces"))]
         shapes = [one_of(SHAPES, (x.shape[1], f.shape[1]), "dimensions and nodes of a face") for f in faces]
         of, dim = _raw.FETI_ALL if body is None else int(body), x.shape[1]
-        number = counted("surface_add_i64", self._handle, of, dim, len(x), at(x), dim, at(dof), dim, 0)
+        number = written("surface_add_i64", self._handle, of, dim, len(x), at(x), dim, at(dof), dim, 0)
         for shape, nodes in zip(shapes, faces):
             call("surface_faces_i64", self._handle, number, shape, len(nodes), at(nodes), 0)
         return Surface(self, number, x.shape)
@@ -315,30 +268,17 @@ class Problem:
 
     def _rigid(self, shape, dim, *data):
         data = numbers(np.concatenate([np.atleast_1d(np.asarray(d)) for d in data]), "data", (None,))
-        return Surface(self, counted("surface_rigid", self._handle, dim, shape, at(data)), data.shape)
+        return Surface(self, written("surface_rigid", self._handle, dim, shape, at(data)), data.shape)
 
     def add_pair(self, slave: Surface, master: Surface, distance: float, method: str = "mortar", tied: bool = False, **numbers_by_name) -> Pair:
         """A pair that may meet; nodes up to `distance`, length, have a partner. method: "mortar" or "node_to_face"; keywords: see Pair.set."""
-        pair, first = c_int64(), c_int64()
         way = one_of(METHODS, method, "method") + (_raw.FETI_TIED if tied else 0)
-        call("pair_add", self._handle, int(slave), int(master), way, distance, byref(pair), byref(first))
-        made = Pair(self, pair.value, slave, first.value)
+        number, first = written("pair_add", self._handle, int(slave), int(master), way, distance, of=(c_int64, c_int64))
+        made = Pair(self, number, slave, first)
         made.set(**numbers_by_name)
         return made
 
-    def find_pairs(self) -> None:
-        """Finds partners at the present positions and makes the rows of all pairs."""
-        self._run("pairs_find")
-
-    def commit_pairs(self) -> None:
-        """Begins the next load step at the present positions."""
-        call("pairs_commit", self._handle)
-
     # ---- solve
-    def setup(self) -> None:
-        """Null spaces and factors; solve makes them when they are due."""
-        self._run("setup")
-
     def solve(self, *, progress: Any = None, **options) -> Info:
         """Solves, and returns the report. Keywords are options, which stay.
 
@@ -346,32 +286,15 @@ class Problem:
         warnings.simplefilter("error", FetiWarning) makes an exception. Ctrl-C: KeyboardInterrupt; the problem can be solved again.
         progress: True shows a line by tqdm, if it is installed; a function gets a Progress, a true result cancels."""
         self.set(**options)
-        info = Info()
-        with contextlib.ExitStack() as stack:
-            self._run("solve", byref(info), watch=stack.enter_context(_bar()) if progress is True else progress or None)
+        with _bar() if progress is True else contextlib.nullcontext(progress or None) as watch:
+            info = written("solve", self._handle, of=(Info,), by=functools.partial(self._run, watch=watch))
         if info.status:
             warnings.warn(f"{info.name}: {LIBRARY.feti_status_text(info.status).decode()}", FetiWarning, stacklevel=2)
         return info
 
-    def cancel(self) -> None:
-        """Ends the setup or solve that runs, from any thread: it returns with FETI_CANCELLED."""
-        call("cancel", self._handle)
-
     # ---- answers
     def _all(self, n):
         return n if n is not None else self._width if self._width is not None else self._counts()[1]
-
-    def displacement(self, n: Optional[int] = None) -> np.ndarray:
-        """u of all bodies, length: one after the other, or by number or of the table (0 where a number has no unknown); n: its length."""
-        u = np.zeros(self._all(n))
-        call("displacement", self._handle, _raw.FETI_ALL, u.size, at(u))
-        return u
-
-    def reaction(self, kind: str = "all", n: Optional[int] = None) -> np.ndarray:
-        """Force of the rows on all bodies: K u = f + r; of one kind: "contact", "equality", "tangential"."""
-        r = np.zeros(self._all(n))
-        call("reaction", self._handle, one_of(KINDS, kind, "kind"), _raw.FETI_ALL, r.size, at(r))
-        return r
 
     def multipliers(self, kind: str = "contact") -> np.ndarray:
         """Forces of rows: lambda >= 0 (rows) of "contact", mu (rows) of "equality", lambda_t (nodes, dim) of "tangential"."""
@@ -379,75 +302,29 @@ class Problem:
         values = filled(size, "multipliers", self._handle, KINDS[kind], size)
         return values.reshape(self._nodes()) if kind == "tangential" else values
 
-    def gaps(self) -> np.ndarray:
-        """Open gap c - B u (+ lambda/k) of each contact row, length."""
-        rows = self._size("contact")
-        return filled(rows, "gaps", self._handle, rows)
-
-    def active(self) -> np.ndarray:
-        """State of each contact row: 0 open, 1 closed, 2 touches without a force, 3 unknown."""
-        rows = self._size("contact")
-        return filled(rows, "active", self._handle, rows, dtype=np.int32)
-
-    def slips(self) -> np.ndarray:
-        """Slip (nodes, dim) of the nodes with friction, length."""
-        shape = self._nodes()
-        return filled(shape, "friction_slips", self._handle, *shape)
-
-    def friction_states(self) -> np.ndarray:
-        """State of each node with friction: 0 open, 1 sticks, 2 slips, 3 at its bound without a slip, 4 unknown."""
-        nodes = self._nodes()[0]
-        return filled(nodes, "friction_states", self._handle, nodes, dtype=np.int32)
-
     def check(self, u=None, contact=None, equality=None, tangential=None) -> Certificate:
         """The certificate of an answer, by default the last one: u of all bodies, one after the other, and forces as multipliers gives them."""
         if u is None:
-            u = np.concatenate([body.displacement() for body in self._bodies])
+            u = np.concatenate([np.empty(0), *(body.displacement() for body in self._bodies)])
             contact, equality, tangential = (self.multipliers(kind) for kind in ("contact", "equality", "tangential"))
         given, sizes = (contact, equality, tangential), [self._size(kind) for kind in ("contact", "equality", "tangential")]
         contact, equality, tangential = (numbers(np.ravel(np.zeros(m) if x is None else x), "force", (m,)) for x, m in zip(given, sizes))
-        u, out = numbers(u, "u", (self._counts()[1],)), Certificate()
+        u = numbers(u, "u", (self._counts()[1],))
         rows = [x for a in (u, contact, equality) for x in (a.size, at(a))]
-        self._run("check_friction", *rows, *self._nodes(), at(tangential), byref(out))
-        return out
-
-    def start_from(self, kind: str, values) -> None:
-        """Start values of the next solve: forces as multipliers gives them."""
-        values = numbers(np.ravel(values), "values", (self._size(kind),))
-        call("start_from", self._handle, KINDS[kind], values.size, at(values))
-
-    # ---- states, diagnosis
-    def save(self) -> int:
-        """Saves loads, rows, friction, forces; returns the number for restore and drop."""
-        return counted("state_save", self._handle)
-
-    def restore(self, state: int) -> None:
-        """Goes back to a saved state, which stays saved."""
-        call("state_restore", self._handle, state)
-
-    def drop(self, state: int) -> None:
-        """Drops a saved state."""
-        call("state_drop", self._handle, state)
-
-    def diagnosis(self) -> Findings:
-        """What the last solve, or the last failed setup, found out."""
-        return reported(Findings, "diagnosis", self._handle)
+        return written("check_friction", self._handle, *rows, *self._nodes(), at(tangential), of=(Certificate,), by=self._run)
 
     def diagnosis_rows(self, kind: str = "contact") -> Tuple[np.ndarray, np.ndarray]:
         """Rows that contradict each other, or repeat another one, and their weights."""
         count = c_int64()
-        call("diagnosis_rows", self._handle, one_of(KINDS, kind, "kind"), 0, byref(count), None, None)
-        row, weight = np.empty(count.value, dtype=np.int64), np.empty(count.value)
-        call("diagnosis_rows", self._handle, KINDS[kind], row.size, byref(count), at(row), at(weight))
+        for _ in range(2):  # how many there are, then they
+            row, weight = np.empty(count.value, dtype=np.int64), np.empty(count.value)
+            call("diagnosis_rows", self._handle, one_of(KINDS, kind, "kind"), row.size, byref(count), at(row), at(weight))
         return row, weight
 
     def phases(self) -> Dict[str, Tuple[float, int]]:
         """Seconds and bytes of each phase of the last setup or solve."""
-        phase, out = _raw.feti_phase(struct_size=ctypes.sizeof(_raw.feti_phase)), {}
-        for k in range(counted("phase_count", self._handle)):
-            call("phase_at", self._handle, k, byref(phase))
-            out[phase.name.decode()] = (phase.seconds, phase.bytes)
-        return out
+        phases = [written("phase_at", self._handle, k, of=(Phase,)) for k in range(written("phase_count", self._handle))]
+        return {phase.name.decode(): (phase.seconds, phase.bytes) for phase in phases}
 
 
 @contextlib.contextmanager
@@ -473,7 +350,6 @@ def _bar():
 
 def _unpickled(data, width):
     with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "problem.feti")
-        with open(path, "wb") as file:
-            file.write(data)
+        path = Path(folder, "problem.feti")
+        path.write_bytes(data)
         return Problem.read(path, width)

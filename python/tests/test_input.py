@@ -171,7 +171,7 @@ def test_an_exception_of_the_host_is_not_taken_by_a_second_thread(spring):
         return True
 
     with pytest.raises(KeyError, match="first"):
-        p._run("solve", None, watch=lambda now: (fail(now), 1 / 0))
+        p._run("solve", p._handle, None, watch=lambda now: (fail(now), 1 / 0))
     assert solved and p.solve()
 
 

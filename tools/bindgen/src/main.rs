@@ -1,5 +1,5 @@
 //! Writes `include/feti_contact.h` and most of `include/fortran` from one parse of `c/src`: the interfaces of the C functions
-//! ([`fortran`]), the typed modules ([`typed`]) and the FORTRAN 77 interface ([`f77`]); the Python module ([`python`]).
+//! ([`fortran`]), the typed modules ([`typed`]) and the FORTRAN 77 interface ([`f77`]); the Python modules ([`python`], [`python_methods`]).
 //!
 //! `feti-bindgen [--check] [--calls FILE] [--trace FILE] [--pages DIR] [--source DIR] [--root DIR]`; `--check` writes nothing and fails on the first line
 //! that differs from the committed files. `--calls FILE` writes a C program for the tests instead ([`calls`]), as does `--trace` ([`trace`]);
@@ -32,6 +32,7 @@ mod pages;
 mod parse;
 mod procedure;
 mod python;
+mod python_methods;
 mod rules;
 mod statuses;
 #[cfg(test)]
@@ -44,6 +45,7 @@ const HEADER: &str = "include/feti_contact.h";
 const FORTRAN: &str = "include/fortran/feti_contact_c.f90";
 const INCLUDE77: &str = "include/fortran/feti_contact_f77.inc";
 const PYTHON: &str = "python/feti_contact/_raw.py";
+const METHODS: &str = "python/feti_contact/_methods.py";
 const FORTRAN77: &str = "include/fortran/feti_contact_f77_calls.f90";
 
 struct Options {
@@ -130,6 +132,7 @@ fn generate(sources: &[(String, String)], version: [u32; 3]) -> Result<Vec<(Stri
         (FORTRAN77, f77::print(&api)),
         (INCLUDE77, f77_constants::print(&api)),
         (PYTHON, python::print(&api)),
+        (METHODS, python_methods::print(&api)),
     ];
     let texts = texts.map(|(path, text)| (path.to_string(), text));
     Ok(texts.into_iter().chain(typed::print(&api)).collect())

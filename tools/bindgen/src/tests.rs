@@ -333,8 +333,8 @@ fn a_page_has_the_statements_that_call_its_function() {
     assert_eq!(calls["feti_body_numbering_i64"], ["CALL FTBNUM(IP, IBODY, N, INUM, IERR)"]);
 }
 
-/// The module `rows` that holds one function of C: `feti_rows_rhs` with these arguments and rows of its table.
-fn rows_module() -> String {
+/// A file generated for one function of C: `feti_rows_rhs` with these arguments and rows of its table.
+fn of_rows(file: &str) -> String {
     let source = format!(
         "{HANDLE}/// Replaces right-hand sides.\n///\n/// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n\
          /// | p | in | scalar | the handle |\n/// | kind | in | scalar | FETI_EQUALITY |\n/// | first | in | scalar | first row, from 0 |\n\
@@ -343,12 +343,12 @@ fn rows_module() -> String {
          rhs: *const f64) -> i32 {{ 0 }}"
     );
     let texts = generate(&[("rows.rs".to_string(), source)], VERSION).unwrap();
-    texts.into_iter().find(|(path, _)| path.ends_with("feti_contact_rows.f90")).unwrap().1
+    texts.into_iter().find(|(path, _)| path.ends_with(file)).unwrap().1
 }
 
 #[test]
 fn a_typed_procedure_counts_from_one_and_takes_sizes_from_arrays() {
-    let text = rows_module();
+    let text = of_rows("feti_contact_rows.f90");
     for line in [
         "  public :: rows_rhs",
         "  !> Replaces right-hand sides. kind: FETI_EQUALITY. first: first row, from 1. rhs(rows): c or h, length.",
@@ -367,7 +367,7 @@ fn a_typed_procedure_counts_from_one_and_takes_sizes_from_arrays() {
 fn the_python_module_has_texts_pointers_and_numbers_as_ctypes_passes_them() {
     let (c, mut text) = (with_argument("*const c_char", "in", "text", "a name"), String::new());
     for (path, generated) in generate(&[("ffi.rs".to_string(), c)], VERSION).unwrap() {
-        if path.ends_with(".py") {
+        if path.ends_with("_raw.py") {
             text = generated;
         }
     }
@@ -379,4 +379,16 @@ fn the_python_module_has_texts_pointers_and_numbers_as_ctypes_passes_them() {
     ] {
         assert!(text.lines().any(|found| found == line), "no `{line}` in\n{text}");
     }
+}
+
+#[test]
+fn a_method_of_python_has_words_defaults_and_lengths_from_the_shapes_of_arrays() {
+    let expected = "
+    def set_rhs(self, kind: str, rhs: Any, first: int = 0) -> None:
+        \"\"\"Replaces c or h of rows from `first` on. kind: \"contact\" or \"equality\".\"\"\"
+        rhs = numbers(rhs, \"rhs\", (None,))
+        call(\"rows_rhs\", self._handle, one_of(KINDS, kind, \"kind\"), first, rhs.size, at(rhs))
+";
+    let text = of_rows("_methods.py");
+    assert!(text.contains(expected), "{text}");
 }
