@@ -231,8 +231,16 @@ driver: stage data
 	cmake --build build/ctest --target $(NAME)
 	$$(find build/ctest -type f -name $(NAME)) build/data
 
-# Several ranks, with the MPI of the system.
-mpi: stage
+# Several ranks, with the MPI of the system; mpi4py for hosts in Python.
+MPI_PYTHON := build/mpi/python
+$(MPI_PYTHON)/installed: tests/mpi/requirements.txt
+	@tools/setup.sh
+	python3 -m venv --clear $(@D)
+	$(@D)/bin/pip install --quiet --requirement $<
+	touch $@
+
+mpi mpi-short: export PYTHON = $(CURDIR)/$(MPI_PYTHON)/bin/python
+mpi: stage $(MPI_PYTHON)/installed
 	@tools/setup.sh libopenmpi-dev openmpi-bin libmpich-dev mpich
 	$(CARGO) build --release --locked --package feti-contact-c --features loopback --target-dir build/mpi/target
 	RELEASE=build/mpi/target/release PREFIX=$(CURDIR)/build/mpi/lending DESTDIR= tools/install.sh install > /dev/null
@@ -242,7 +250,7 @@ mpi: stage
 	LENDING=$(CURDIR)/build/mpi/lending PROBLEMS=$(CURDIR)/build/mpi/problems \
 		sh tests/mpi/run.sh $(STAGE) $(CURDIR) build/mpi openmpi mpich
 
-mpi-short: stage
+mpi-short: stage $(MPI_PYTHON)/installed
 	@tools/setup.sh libopenmpi-dev openmpi-bin
 	sh tests/mpi/run.sh $(STAGE) $(CURDIR) build/mpi openmpi
 

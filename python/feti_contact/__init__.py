@@ -16,8 +16,8 @@ from ._library import LIBRARY, FetiError, FetiWarning
 from ._methods import BodyInfo, Certificate, Findings, PairInfo, Progress
 from ._records import Info
 from .parts import Body, Pair, Surface
-from .problem import Problem
+from .problem import Problem, serve
 
 __version__ = LIBRARY.feti_version().decode()
 __all__ = ["Body", "BodyInfo", "Certificate", "FetiError", "FetiWarning", "Findings", "Info", "Pair", "PairInfo", "Problem", "Progress", "Surface"]
-__all__ += ["outward"]
+__all__ += ["outward", "serve"]

@@ -52,12 +52,18 @@ class _Calls:
 class Problem(ProblemCalls, contextlib.AbstractContextManager):
     """Bodies, rows, options and the last answer. One thread at a time; several may use different problems. Keywords are options (docs/options.md).
 
+    communicator: one of mpi4py, on each rank that has a part of the problem (docs/machines.md); rank 0 lends bodies to the ranks in `serve`.
     `with` or close() frees its memory at once, otherwise the garbage collection does; every call on a closed problem is a FetiError."""
 
-    def __init__(self, **options):
+    def __init__(self, *, communicator: Any = None, **options):
         self._handle, self._kept, self._width, self._calls = c_void_p(), {}, None, _Calls()
-        self._bodies, self._alone = [], threading.Lock()
+        self._bodies, self._alone, self._stream = [], threading.Lock(), None
         call("problem_create", byref(self._handle))
+        if communicator is not None:
+            from ._mpi import stream_of
+
+            self._stream = stream_of(communicator)
+            call("communicator_set", self._handle, byref(self._stream.table))
         self.set(**options)
 
     # ---- life
@@ -80,6 +86,8 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
         return "<Problem: {} bodies, {} unknowns, {} contact rows, {} equality rows>".format(*self._counts())
 
     def __reduce__(self):
+        if self._stream:
+            raise TypeError("a problem of several ranks cannot be pickled; all ranks can `write` it")
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "problem.feti")
             self.write(path)
@@ -87,7 +95,7 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
 
     def write(self, path: Union[str, os.PathLike]) -> None:
         """Writes all input to a problem file; not the answer, surfaces (their rows are written), saved states and functions."""
-        call("problem_write", self._handle, os.fsencode(path))
+        self._run("problem_write", self._handle, os.fsencode(path))
 
     @classmethod
     def read(cls, path: Union[str, os.PathLike], width: Optional[int] = None) -> Problem:
@@ -111,7 +119,8 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
         try:
             call("on_log", self._handle, calls.on_log if level else _raw.feti_log_fn(), level, None)
             call("on_progress", self._handle, calls.on_progress if watch else _raw.feti_progress_fn(), None)
-            return interruptible(lambda: call(name, *arguments), lambda: LIBRARY.feti_cancel(self._handle))
+            run = self._stream.run if self._stream else interruptible
+            return run(lambda: call(name, *arguments), lambda: LIBRARY.feti_cancel(self._handle))
         except FetiError as failed:
             if calls.error is not None:
                 raise calls.error from failed
@@ -353,3 +362,11 @@ def _unpickled(data, width):
         path = Path(folder, "problem.feti")
         path.write_bytes(data)
         return Problem.read(path, width)
+
+
+def serve(communicator: Any) -> None:
+    """On ranks other than 0: works for the problems of rank 0, until rank 0 makes this call, too. Every rank makes it once. communicator: of mpi4py."""
+    from ._mpi import stream_of
+
+    stream = stream_of(communicator)
+    stream.run(lambda: call("serve", byref(stream.table)))

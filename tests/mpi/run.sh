@@ -1,7 +1,7 @@
 #!/bin/sh
 # run.sh PREFIX ROOT WORK MPI...: with each MPI (openmpi, mpich, as Debian names their compilers) the installed sources for MPI are
 # compiled without a warning, as they are and with messages cut at 4096 bytes; examples 15 to 17 in C and Fortran, FORTRAN 77 hosts and
-# hostile hosts print on 2 and 4 ranks what they print on 1; of a mistake that one of 3 ranks makes, each in turn, all hear the same. The
+# hostile hosts print on 2 and 4 ranks what they print on 1, a host in Python (PYTHON has mpi4py) on 2 and 3; of a mistake that one of 3 ranks makes, each in turn, all hear the same. The
 # shared library needs no MPI. With PROBLEMS, a folder of problems, also what comes of these, bit by bit: of those that are dealt out over
 # the ranks (*.deal), and with LENDING, the prefix of a library that lends every body, of problem files (*.feti).
 set -eu
@@ -126,6 +126,9 @@ for mpi in "$@"; do
         for case in messages alive twice parts; do same "$mpi" ./hostile "$case"; done
         [ "$chunk" = whole ] || continue
         for example in $examples; do same "$mpi" "./${example}_fortran"; done
+        # mpi4py of PyPI finds Open MPI, or the MPI that it is told
+        [ "$mpi" != openmpi ] || PYTHONPATH="$root/python" PYTHONDONTWRITEBYTECODE=1 FETI_CONTACT_LIBRARY="$prefix/lib/libfeti_contact.so" \
+            counts="1 2 3" same "$mpi" "${PYTHON:?with mpi4py}" "$root/tests/mpi/python_host.py"
         same "$mpi" ./lends
         same "$mpi" ./gives
         limit=600 run "$mpi" 3 ./statuses >printed 2>errors || { cat printed errors; fail "$mpi: not all ranks hear the same of every mistake"; }
