@@ -29,12 +29,6 @@ def integers(x, name, shape=None, dtype=None):
     return np.ascontiguousarray(fitting(a, name, shape), dtype=dtype)
 
 
-def together(*arrays):
-    """The index arrays with one type, and the ending of the C function for it: they are copied only if they differ."""
-    wide = any(a.dtype == np.int64 for a in arrays if a is not None)
-    return [None if a is None else np.ascontiguousarray(a, dtype=np.int64 if wide else np.int32) for a in arrays], "i64" if wide else "i32"
-
-
 def fitting(a, name, shape):
     if shape is not None and (a.ndim != len(shape) or any(want not in (None, has) for want, has in zip(shape, a.shape))):
         want = ", ".join("any" if n is None else str(n) for n in shape)
@@ -42,16 +36,10 @@ def fitting(a, name, shape):
     return a
 
 
-def at(a):
-    """The address of an array for ctypes; None remains None. The caller keeps the array."""
-    assert a is None or a.flags.c_contiguous
-    return None if a is None else a.ctypes.data
-
-
 def filled(shape, name, *arguments, dtype=np.float64):
     """An array of this shape that feti_NAME fills, its last argument; 0 where it writes nothing."""
     out = np.zeros(shape, dtype)
-    call(name, *arguments, at(out))
+    call(name, *arguments, out)
     return out
 
 

@@ -6,6 +6,8 @@ import threading
 from concurrent.futures import Future
 from pathlib import Path
 
+import numpy as np
+
 from . import _raw
 
 #: ctypes takes the last bits of numbers beyond these.
@@ -64,8 +66,17 @@ def last_error(status: int) -> FetiError:
 
 
 def call(name: str, *arguments) -> int:
-    """Calls feti_NAME; a status below 0 is a FetiError. Arguments as ctypes takes them."""
-    function = getattr(LIBRARY, "feti_" + name)
+    """Calls feti_NAME; a status below 0 is a FetiError. Arguments as ctypes takes them, and arrays in one piece.
+
+    NAME_*: the function for the integers of the arrays, which are copied only if their types differ."""
+    if name.endswith("*"):
+        integers = [a for a in arguments if isinstance(a, np.ndarray) and a.dtype.kind == "i"]
+        kind = np.result_type(np.int32, *integers)
+        arguments = [np.ascontiguousarray(a, kind) if any(a is one for one in integers) else a for a in arguments]
+        name = name[:-1] + f"i{8 * kind.itemsize}"
+    function, kept = getattr(LIBRARY, "feti_" + name), arguments
+    assert all(a.flags.c_contiguous for a in kept if isinstance(a, np.ndarray))
+    arguments = [a.ctypes.data if isinstance(a, np.ndarray) else a for a in kept]
     for kind, argument in zip(function.argtypes, arguments):
         if kind in LIMITS and isinstance(argument, int) and not -LIMITS[kind] <= argument < LIMITS[kind]:
             raise OverflowError(f"feti_{name}: {argument} does not fit into {8 * ctypes.sizeof(kind)} bits")

@@ -10,7 +10,7 @@ from typing import Any, Optional, Tuple
 import numpy as np
 
 from . import _raw
-from ._arrays import at, filled, numbers, one_of, written
+from ._arrays import filled, numbers, one_of, written
 from ._library import call
 from ._records import Record
 
@@ -36,12 +36,12 @@ class ProblemCalls:
         """Gives the loads of all bodies (see displacement)."""
         body, n = _raw.FETI_ALL, self._all(n)
         f = numbers(f, "load", (n,))
-        call("body_load", self._handle, body, n, at(f))
+        call("body_load", self._handle, body, n, f)
 
     def set_rhs(self, kind: str, rhs: Any, first: int = 0) -> None:
         """Replaces c or h of rows from `first` on. kind: "contact" or "equality"."""
         rhs = numbers(rhs, "rhs", (None,))
-        call("rows_rhs", self._handle, one_of(KINDS, kind, "kind"), first, rhs.size, at(rhs))
+        call("rows_rhs", self._handle, one_of(KINDS, kind, "kind"), first, rhs.size, rhs)
 
     def commit_friction(self) -> None:
         """Ends a load step: slips count from the last answer."""
@@ -97,7 +97,7 @@ class ProblemCalls:
         """Start values of the next solve: forces as multipliers gives them."""
         rows, values = self._size(kind), np.ravel(values)
         values = numbers(values, "values", (rows,))
-        call("start_from", self._handle, one_of(KINDS, kind, "kind"), rows, at(values))
+        call("start_from", self._handle, one_of(KINDS, kind, "kind"), rows, values)
 
     def save(self) -> int:
         """Saves loads, rows, friction, forces; returns the number for restore and drop."""
@@ -122,7 +122,7 @@ class BodyCalls:
     def load(self, f: Any) -> None:
         """Gives the load f (n), force; another call replaces it."""
         f = numbers(f, "load", (self.n,))
-        call("body_load", self._handle, self.number, self.n, at(f))
+        call("body_load", self._handle, self.number, self.n, f)
 
     def displacement(self) -> np.ndarray:
         """u (n) of the last answer, length."""

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import ctypes
-import signal
-import threading
 import time
 
 from mpi4py import MPI
 
 from . import _raw
-from ._library import FetiError
+from ._library import FetiError, interruptible
 
 CHUNK = 1 << 30  # bytes of a message at most: MPI counts in int
 SPINS, SHORTEST, LONGEST = 2000, 20e-6, 100e-6  # tries before a rest, seconds of a rest
@@ -56,14 +54,12 @@ class Stream:
             raise
 
     def flush(self):
-        failed, sent, self.sent = None, self.sent, []
-        for request in sent:  # after a failure of one message the others are waited for, too
-            try:
-                self.complete(request)
-            except MPI.Exception as error:
-                failed = failed or error
-        if failed:
-            raise failed
+        try:
+            while self.sent:
+                self.complete(self.sent.pop(0))
+        finally:  # after a failure of one message the others are waited for, too
+            if self.sent:
+                self.flush()
 
     def receive(self, rank, size, data):
         for portion in portions(size, data):
@@ -77,21 +73,13 @@ class Stream:
             if tries > SPINS:
                 time.sleep(min(SHORTEST + (tries - SPINS) * 1e-6, LONGEST) if self.rank else 0)
 
-    def run(self, work, cancel=lambda: None):
-        """`work()` on this thread, which may be the only one for MPI. Ctrl-C is a `cancel()`, and comes out afterwards: no message breaks off."""
-        self.error, struck, handler = None, [], signal.getsignal(signal.SIGINT)
-        is_main = threading.current_thread() is threading.main_thread() and callable(handler)
-        if is_main:
-            signal.signal(signal.SIGINT, lambda *place: (struck.append(place), cancel()))
+    def run(self, work, cancel):
+        """`work()`, on this thread if it may be the only one for MPI; otherwise Ctrl-C is a `cancel()`, and is raised when all ranks have ended."""
+        self.error = None
         try:
-            return work()
+            return interruptible(work, cancel) if MPI.Query_thread() >= MPI.THREAD_SERIALIZED else work()
         except FetiError as failed:
             raise failed from self.error
-        finally:
-            if is_main:
-                signal.signal(signal.SIGINT, handler)
-            if struck:
-                handler(*struck[0])
 
 
 def portions(size, data):

@@ -13,21 +13,16 @@ class Record(ctypes.Structure):
         super().__init__()
         self.struct_size = ctypes.sizeof(self)
 
-    def _shown(self):
-        for name, _ in type(self)._fields_:
-            value = getattr(self, name)
-            value = tuple(value) if isinstance(value, ctypes.Array) else value
-            empty = value in (0, -1) and name not in ("status", "passed") or value != value or isinstance(value, tuple) and not any(x == x and x for x in value)
-            if not empty and name != "struct_size":
-                yield name, value
-
     def as_dict(self):
         """The fields that are not 0 and apply, by name."""
-        return dict(self._shown())
+        values = {name: getattr(self, name) for name, _ in self._fields_ if name != "struct_size"}
+        values = {name: tuple(value) if isinstance(value, ctypes.Array) else value for name, value in values.items()}
+        says = lambda x: any(y == y and y for y in x) if isinstance(x, tuple) else x == x and x not in (0, -1)  # noqa: E731
+        return {name: value for name, value in values.items() if says(value) or name in ("status", "passed")}
 
     def __repr__(self):
         text = lambda x: f"{x:.6g}" if isinstance(x, float) else f"({', '.join(map(text, x))})" if isinstance(x, tuple) else str(x)  # noqa: E731
-        fields = {name: text(value) for name, value in self._shown()}
+        fields = {name: text(value) for name, value in self.as_dict().items()}
         if "status" in fields:
             fields["status"] = LIBRARY.feti_status_name(self.status).decode()
         return f"{type(self).__name__}({', '.join(f'{name}={value}' for name, value in fields.items())})"

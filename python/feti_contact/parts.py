@@ -9,7 +9,7 @@ from typing import Any, Callable, Tuple
 import numpy as np
 
 from . import _raw
-from ._arrays import as_csr, at, compressed, filled, fitting, integers, is_sparse, listed, numbers, one_of, together
+from ._arrays import as_csr, compressed, filled, fitting, integers, is_sparse, listed, numbers, one_of, optional
 from ._library import call
 from ._methods import FIELDS, MOTIONS, STORAGE, BodyCalls, PairCalls
 
@@ -56,17 +56,16 @@ class Body(BodyCalls, Part):
         lent = []
         if not is_sparse(K):
             K = numbers(K, "K", (self.n, self.n))
-            self._call("body_stiffness_dense", self.n, at(K), self.n, STORAGE[TURNED[storage]], _raw.FETI_COPY)
+            self._call("body_stiffness_dense", self.n, K, self.n, STORAGE[TURNED[storage]], _raw.FETI_COPY)
         elif fitting(K, "K", (self.n, self.n)).format == "coo":
-            (row, col), kind = together(integers(K.row, "K.row", (None,)), integers(K.col, "K.col", (None,)))
+            row, col = integers(K.row, "K.row", (None,)), integers(K.col, "K.col", (None,))
             val = numbers(K.data, "K.data", row.shape)
-            self._call(f"body_stiffness_triplets_{kind}", self.n, val.size, at(row), at(col), at(val), 0, STORAGE[storage], _raw.FETI_COPY)
+            self._call("body_stiffness_triplets_*", self.n, val.size, row, col, val, 0, STORAGE[storage], _raw.FETI_COPY)
         else:
             storage = TURNED[storage] if K.format == "csc" else storage  # rows of K' = K
             K = K if K.format == "csc" else as_csr(K, "K")
             ptr, col, val = compressed(K.indptr, K.indices, K.data, self.n, "K")
-            (ptr, col), kind = together(ptr, col)
-            self._call(f"body_stiffness_{kind}", self.n, at(ptr), at(col), at(val), 0, STORAGE[storage], _raw.FETI_COPY if copy else _raw.FETI_BORROW)
+            self._call("body_stiffness_*", self.n, ptr, col, val, 0, STORAGE[storage], _raw.FETI_COPY if copy else _raw.FETI_BORROW)
             lent = [] if copy else [val, col][: self.info.borrowed]
         for array in lent:
             array.flags.writeable = False
@@ -77,25 +76,24 @@ class Body(BodyCalls, Part):
 
         ptr (n + 1) from 0; diagonal (n): the columns are without it."""
         ptr, values = integers(ptr, "ptr", (self.n + 1,)), numbers(values, "values", (None,))
-        (ptr,), kind = together(ptr)
         if not 0 <= ptr[-1] <= values.size:
             raise ValueError(f"ptr ends with {ptr[-1]}, but there are {values.size} values")
-        diagonal = None if diagonal is None else numbers(diagonal, "diagonal", (self.n,))
-        self._call(f"body_stiffness_skyline_{kind}", self.n, at(diagonal), at(ptr), at(values), 0, int(up), _raw.FETI_COPY)
+        diagonal = optional(diagonal, "diagonal", (self.n,))
+        self._call("body_stiffness_skyline_*", self.n, diagonal, ptr, values, 0, int(up), _raw.FETI_COPY)
         self.problem._kept.pop(self.number, None)
 
     def values(self, K: Any) -> None:
         """Gives new values of K in the pattern and order of the first: a matrix of the same form, or its values alone. The analysis is kept."""
         if is_sparse(K) or np.ndim(K) == 1:
             val = numbers(K.data if is_sparse(K) else K, "values", (None,))
-            self._call("body_values", val.size, at(val))
+            self._call("body_values", val.size, val)
             kept = self.problem._kept.get(self.number)
             if kept:  # the values of a matrix that is lent are replaced by these
                 val.flags.writeable = False
                 kept[0] = val
         else:
             K = numbers(K, "K", (self.n, self.n))
-            self._call("body_values_dense", self.n, at(K), self.n)
+            self._call("body_values_dense", self.n, K, self.n)
 
     def elements(self, dofs, matrices, storage: str = "full") -> None:
         """Gives K by its elements: dofs (elements, k) and matrices (elements, k, k), or lists of arrays of several sizes. dofs below 0 are held.
@@ -111,9 +109,9 @@ class Body(BodyCalls, Part):
             triangle = np.triu_indices if one_of(STORAGE, storage, "storage") == _raw.FETI_UPPER else np.tril_indices
             ke = [m[triangle(len(m))] for m in ke]
             storage = TURNED[storage]  # by rows, not by columns
-        self._call("body_mesh_i64", len(dofs), at(ptr), at(dof), 0)
+        self._call("body_mesh_*", len(dofs), ptr, dof, 0)
         ke = np.concatenate([m.ravel() for m in ke]) if ke else np.empty(0)
-        self._call("body_elements", 0, len(dofs), at(ke), STORAGE[storage])
+        self._call("body_elements", 0, len(dofs), ke, STORAGE[storage])
         self.problem._kept.pop(self.number, None)
 
     def operator(self, diagonal, kplus: Callable, k: Callable, concurrent: bool = False) -> None:
@@ -122,7 +120,7 @@ class Body(BodyCalls, Part):
         diagonal (n): that of K. concurrent: they may run on several threads at once. Their exceptions come out of the solve."""
         diagonal = numbers(diagonal, "diagonal", (self.n,))
         functions = [_raw.feti_operator_fn(self._applied(f, self.problem._calls.catch)) for f in (kplus, k)]
-        self._call("body_operator", self.n, at(diagonal), *functions, int(concurrent), None)
+        self._call("body_operator", self.n, diagonal, *functions, int(concurrent), None)
         self.problem._kept[self.number] = functions
 
     @staticmethod
@@ -147,7 +145,7 @@ class Body(BodyCalls, Part):
         R = np.asarray(R)
         R = fitting(numbers(R.reshape(-1, 1) if R.ndim == 1 else R, "null_space"), "null_space", (self.n, None))
         columns = np.ascontiguousarray(R.T)
-        self._call("body_null_space", R.shape[1], self.n, at(columns), self.n, one_of(MOTIONS, kind, "kind"))
+        self._call("body_null_space", R.shape[1], self.n, columns, self.n, one_of(MOTIONS, kind, "kind"))
 
     def coordinates(self, xyz, node=None, direction=None, kind: str = "candidates") -> None:
         """Gives the places from which the library makes rigid motions: of nodes with an unknown for each direction, xyz (n / dim, dim), or of
@@ -161,12 +159,12 @@ class Body(BodyCalls, Part):
         xyz = fitting(xyz, "coordinates", (self.n, dim))
         node, direction = integers(node, "node", (self.n,), np.int32), integers(direction, "direction", (self.n,), np.int32)
         self._call("body_coordinates_flags", one_of(MOTIONS, kind, "kind"))
-        self._call("body_coordinates", dim, self.n, at(node), at(direction), at(xyz), dim)
+        self._call("body_coordinates", dim, self.n, node, direction, xyz, dim)
 
     def numbering(self, number) -> None:
         """Gives the host's number of each unknown (n), from 0: for rows of the whole model and for arrays over all bodies."""
-        number = integers(number, "number", (self.n,), np.int64)
-        self._call("body_numbering_i64", self.n, at(number), 0)
+        number = integers(number, "number", (self.n,))
+        self._call("body_numbering_*", self.n, number, 0)
         self.problem._width = max(self.problem._width or 0, int(number.max()) + 1)
 
     def motions(self) -> np.ndarray:
@@ -174,7 +172,7 @@ class Body(BodyCalls, Part):
         r = c_int64()
         self._call("body_null_space_get", self.n, byref(r), None, 0)
         R = np.empty((r.value, self.n))
-        self._call("body_null_space_get", self.n, byref(r), at(R), self.n)
+        self._call("body_null_space_get", self.n, byref(r), R, self.n)
         return R.T
 
     def surface(self, x, dof=None, faces=()) -> Surface:
@@ -194,7 +192,7 @@ class Surface(Part):
     def move(self, x) -> None:
         """Gives new positions: x (nodes, dim), length, or the numbers of a rigid shape."""
         x = numbers(x, "x", self.shape)
-        self._call("surface_move", at(x), x.shape[-1])
+        self._call("surface_move", x, x.shape[-1])
 
 
 @dataclass(frozen=True, repr=False)
@@ -213,7 +211,7 @@ class Pair(PairCalls, Part):
             value = fitting(np.atleast_1d(numbers(value, name)), name, (None,))
             if value.size not in (1, self.slave.shape[0]):
                 raise ValueError(f"{name}: {value.size} numbers, not 1 or {self.slave.shape[0]}, the nodes of the slave")
-            self._call("pair_set_f64", name.encode(), value.size, at(value))
+            self._call("pair_set_f64", name.encode(), value.size, value)
 
     def field(self, name: str) -> np.ndarray:
         """force, pressure, gap, area, closed (nodes) or shear, slip, normal (nodes, dim) at the nodes of the slave; 0 without a partner."""

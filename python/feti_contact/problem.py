@@ -18,7 +18,7 @@ from typing import Any, Dict, Optional, Tuple, Union
 import numpy as np
 
 from . import _raw
-from ._arrays import at, constraint_rows, filled, integers, listed, numbers, one_of, optional, rows_of, together, written
+from ._arrays import constraint_rows, filled, integers, listed, numbers, one_of, optional, rows_of, written
 from ._library import LIBRARY, FetiError, FetiWarning, call, interruptible
 from ._methods import KINDS, METHODS, BodyInfo, Certificate, Option, Phase, ProblemCalls, Progress
 from ._records import Info
@@ -28,6 +28,9 @@ LOG = logging.getLogger("feti_contact")
 FOUND = object()  # null_space: the library finds it
 
 OPTIONS = {option.name.decode(): option.type for option in (written("option_at", k, of=(Option,)) for k in range(LIBRARY.feti_option_count()))}
+# of options: ending of the C functions, type and conversion of their values
+WAYS = {_raw.FETI_OPTION_F64: ("f64", c_double, float), _raw.FETI_OPTION_I64: ("i64", c_int64, operator.index)}
+TEXT = ("str", None, lambda value: str(value).encode())
 
 
 class _Calls:
@@ -133,19 +136,14 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
     def set(self, **options) -> None:
         """Sets options by name; they stay until they are set again."""
         for name, value in options.items():
-            kind, key = OPTIONS.get(name), name.encode()
-            if kind == _raw.FETI_OPTION_F64:
-                call("set_f64", self._handle, key, float(value))
-            elif kind == _raw.FETI_OPTION_I64:
-                call("set_i64", self._handle, key, integers(int(value) if isinstance(value, bool) else value, name).item())
-            else:
-                call("set_str", self._handle, key, str(value).encode())
+            ending, _, given = WAYS.get(OPTIONS.get(name), TEXT)
+            call(f"set_{ending}", self._handle, name.encode(), given(value))
 
     def get(self, name: str) -> Union[int, float, str]:
         """The present value of an option."""
-        of = {_raw.FETI_OPTION_F64: c_double, _raw.FETI_OPTION_I64: c_int64}.get(OPTIONS.get(name))
-        if of:
-            return written("get_f64" if of is c_double else "get_i64", self._handle, name.encode(), of=(of,))
+        ending, kind, _ = WAYS.get(OPTIONS.get(name), TEXT)
+        if kind:
+            return written(f"get_{ending}", self._handle, name.encode(), of=(kind,))
         text = ctypes.create_string_buffer(1000)
         written("get_str", self._handle, name.encode(), text, len(text))
         return text.value.decode()
@@ -181,23 +179,21 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
 
     def dof_table(self, number, terms=None, constant=None) -> None:
         """Names all n unknowns of the host: number (n) in K, below 0: eliminated, u = constant + terms u; terms (n, n) sparse or dense."""
-        number = integers(number, "number", (None,), np.int64)
+        number = integers(number, "number", (None,))
         n, ptr, term, factor = number.size, None, None, None
         if terms is not None:
             ptr, term, factor, rows, columns = rows_of(terms, "terms")
             if (rows, columns) != (n, n):
                 raise ValueError(f"terms: shape {(rows, columns)}, not {(n, n)}")
-            ptr, term = ptr.astype(np.int64), term.astype(np.int64)
         constant = optional(constant, "constant", (n,))
-        call("dof_table_i64", self._handle, n, at(number), at(ptr), at(term), at(factor), at(constant), 0)
+        call("dof_table_*", self._handle, n, number, ptr, term, factor, constant, 0)
         self._width = n
 
     # ---- rows
     def _add_rows(self, kind, rows, rhs, compliance):
         m, ptr, body, dof, val = constraint_rows(rows, "rows")
         rhs, compliance = optional(rhs, "right-hand side", (m,)), optional(compliance, "compliance", (m,))
-        (ptr, body, dof), ending = together(ptr, body, dof)
-        first = written(f"rows_add_{ending}", self._handle, KINDS[kind], m, at(ptr), at(body), at(dof), at(val), 0, at(rhs))
+        first = written("rows_add_*", self._handle, KINDS[kind], m, ptr, body, dof, val, 0, rhs)
         if compliance is not None:
             self.set_compliance(kind, compliance, first)
         return range(first, first + m)
@@ -216,7 +212,7 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
         """Replaces 1/k of rows from `first` on, length / force; of nodes with friction (kind "tangential") 1/k_t."""
         inv_k, number = numbers(inv_k, "compliance", (None,)), one_of(KINDS, kind, "kind")
         of = ("friction_compliance", self._handle) if kind == "tangential" else ("rows_compliance", self._handle, number)
-        call(*of, first, inv_k.size, at(inv_k))
+        call(*of, first, inv_k.size, inv_k)
 
     def clear(self, kind: str) -> None:
         """Removes all rows of a kind but those of pairs; "contact" also removes the nodes with friction, which "tangential" removes alone."""
@@ -233,9 +229,7 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
         if nodes and m % nodes:
             raise ValueError(f"rows: {m} for {nodes} nodes")
         law = [optional(x, name, (nodes,)) for x, name in ((coefficient, "coefficient"), (bound, "bound"), (compliance, "compliance"))]
-        (contact, ptr, body, dof), ending = together(contact, ptr, body, dof)
-        arrays = map(at, (contact, ptr, body, dof, val))
-        first = written(f"friction_add_{ending}", self._handle, nodes, m // nodes if nodes else 1, *arrays, 0, at(law[0]), at(law[1]))
+        first = written("friction_add_*", self._handle, nodes, m // nodes if nodes else 1, contact, ptr, body, dof, val, 0, law[0], law[1])
         if law[2] is not None:
             self.set_compliance("tangential", law[2], first)
         return range(first, first + nodes)
@@ -245,7 +239,7 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
         sizes = [np.size(x) for x in (coefficient, bound) if np.ndim(x)]
         nodes = nodes if nodes is not None else sizes[0] if sizes else self._nodes()[0] - first
         law = optional(coefficient, "coefficient", (nodes,)), optional(bound, "bound", (nodes,))
-        call("friction_law", self._handle, first, nodes, at(law[0]), at(law[1]))
+        call("friction_law", self._handle, first, nodes, law[0], law[1])
 
     # ---- surfaces and pairs
     def add_surface(self, x, dof=None, faces=(), body: Union[Body, int, None] = None) -> Surface:
@@ -254,13 +248,13 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
         Without body: unknowns of all bodies, by number or of the table. Without dof: a tool. faces: an array (m, k) of nodes from 0, or a
         list of such arrays; k = 2, 3 in the plane, 3, 6, 4, 8, 9 in space; the outside is where `outward` turns them. k = 1: points without faces."""
         x = numbers(x, "x", (None, None))
-        dof = None if dof is None else integers(dof, "dof", x.shape, np.int64)
-        faces = [integers(f, "faces", (None, None), np.int64) for f in ([faces] if isinstance(faces, np.ndarray) else listed(faces, "faces"))]
+        dof = None if dof is None else integers(dof, "dof", x.shape)
+        faces = [integers(f, "faces", (None, None)) for f in ([faces] if isinstance(faces, np.ndarray) else listed(faces, "faces"))]
         shapes = [one_of(SHAPES, (x.shape[1], f.shape[1]), "dimensions and nodes of a face") for f in faces]
         of, dim = _raw.FETI_ALL if body is None else int(body), x.shape[1]
-        number = written("surface_add_i64", self._handle, of, dim, len(x), at(x), dim, at(dof), dim, 0)
+        number = written("surface_add_*", self._handle, of, dim, len(x), x, dim, dof, dim, 0)
         for shape, nodes in zip(shapes, faces):
-            call("surface_faces_i64", self._handle, number, shape, len(nodes), at(nodes), 0)
+            call("surface_faces_*", self._handle, number, shape, len(nodes), nodes, 0)
         return Surface(self, number, x.shape)
 
     def add_plane(self, point, normal) -> Surface:
@@ -277,7 +271,7 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
 
     def _rigid(self, shape, dim, *data):
         data = numbers(np.concatenate([np.atleast_1d(np.asarray(d)) for d in data]), "data", (None,))
-        return Surface(self, written("surface_rigid", self._handle, dim, shape, at(data)), data.shape)
+        return Surface(self, written("surface_rigid", self._handle, dim, shape, data), data.shape)
 
     def add_pair(self, slave: Surface, master: Surface, distance: float, method: str = "mortar", tied: bool = False, **numbers_by_name) -> Pair:
         """A pair that may meet; nodes up to `distance`, length, have a partner. method: "mortar" or "node_to_face"; keywords: see Pair.set."""
@@ -319,15 +313,15 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
         given, sizes = (contact, equality, tangential), [self._size(kind) for kind in ("contact", "equality", "tangential")]
         contact, equality, tangential = (numbers(np.ravel(np.zeros(m) if x is None else x), "force", (m,)) for x, m in zip(given, sizes))
         u = numbers(u, "u", (self._counts()[1],))
-        rows = [x for a in (u, contact, equality) for x in (a.size, at(a))]
-        return written("check_friction", self._handle, *rows, *self._nodes(), at(tangential), of=(Certificate,), by=self._run)
+        rows = [x for a in (u, contact, equality) for x in (a.size, a)]
+        return written("check_friction", self._handle, *rows, *self._nodes(), tangential, of=(Certificate,), by=self._run)
 
     def diagnosis_rows(self, kind: str = "contact") -> Tuple[np.ndarray, np.ndarray]:
         """Rows that contradict each other, or repeat another one, and their weights."""
         count = c_int64()
         for _ in range(2):  # how many there are, then they
             row, weight = np.empty(count.value, dtype=np.int64), np.empty(count.value)
-            call("diagnosis_rows", self._handle, one_of(KINDS, kind, "kind"), row.size, byref(count), at(row), at(weight))
+            call("diagnosis_rows", self._handle, one_of(KINDS, kind, "kind"), row.size, byref(count), row, weight)
         return row, weight
 
     def phases(self) -> Dict[str, Tuple[float, int]]:
@@ -369,4 +363,4 @@ def serve(communicator: Any) -> None:
     from ._mpi import stream_of
 
     stream = stream_of(communicator)
-    stream.run(lambda: call("serve", byref(stream.table)))
+    stream.run(lambda: call("serve", byref(stream.table)), lambda: None)

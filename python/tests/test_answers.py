@@ -261,3 +261,14 @@ def test_points_of_a_mesh_that_faces_of_one_node_name_meet_a_plane():
     assert p.solve()
     np.testing.assert_allclose(pair.info.force, [0, 2, 0], atol=1e-12)
     np.testing.assert_allclose(body.displacement().reshape(4, 2)[:, 1], [0, 0, -1, -1], atol=1e-12)
+
+
+def test_a_surface_without_unknowns_is_a_tool_and_a_record_shows_forces_below_0():
+    p = fc.Problem()
+    body = p.add_body(np.eye(4) * 1000, load=[0, 3, 0, 3], null_space=None)
+    head = body.surface([[2, 0], [0, 0]], [[2, 3], [0, 1]], np.array([[0, 1]]))
+    pair = p.add_pair(head, p.add_surface([[-9, 0], [9, 0]], faces=np.array([[0, 1]])), distance=1, method="node_to_face")
+    p.find_pairs()
+    p.solve()
+    np.testing.assert_allclose(pair.info.force[:2], [0, -6], atol=1e-12)
+    assert pair.info.as_dict()["force"][1] == pytest.approx(-6) and "force=(" in repr(pair.info)

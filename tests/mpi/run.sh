@@ -127,8 +127,10 @@ for mpi in "$@"; do
         [ "$chunk" = whole ] || continue
         for example in $examples; do same "$mpi" "./${example}_fortran"; done
         # mpi4py of PyPI finds Open MPI, or the MPI that it is told
-        [ "$mpi" != openmpi ] || PYTHONPATH="$root/python" PYTHONDONTWRITEBYTECODE=1 FETI_CONTACT_LIBRARY="$prefix/lib/libfeti_contact.so" \
-            counts="1 2 3" same "$mpi" "${PYTHON:?with mpi4py}" "$root/tests/mpi/python_host.py"
+        [ "$mpi" != openmpi ] || for level in multiple funneled; do
+            PYTHONPATH="$root/python" PYTHONDONTWRITEBYTECODE=1 FETI_CONTACT_LIBRARY="$prefix/lib/libfeti_contact.so" MPI4PY_RC_THREAD_LEVEL=$level \
+                counts="1 2 3" same "$mpi" "${PYTHON:?with mpi4py}" "$root/tests/mpi/python_host.py"
+        done
         same "$mpi" ./lends
         same "$mpi" ./gives
         limit=600 run "$mpi" 3 ./statuses >printed 2>errors || { cat printed errors; fail "$mpi: not all ranks hear the same of every mistake"; }

@@ -25,7 +25,7 @@ pub fn print(api: &Api) -> String {
          from typing import Any, Optional, Tuple\n\n\
          import numpy as np\n\n\
          from . import _raw\n\
-         from ._arrays import at, filled, numbers, one_of, written\n\
+         from ._arrays import filled, numbers, one_of, written\n\
          from ._library import call\n\
          from ._records import Record\n\n"
         .to_string();
@@ -180,9 +180,10 @@ impl<'a> Method<'a> {
         let name = argument.name.as_str();
         if let Some(Parameter { name, words, .. }) = parameter {
             return match words {
-                _ if argument.ty.target().is_some() => format!("at({name})"),
-                Some(words) => format!("one_of({words}, {name}, \"{name}\")"),
-                None => name.to_string(),
+                Some(words) if argument.ty.target().is_none() => {
+                    format!("one_of({words}, {name}, \"{name}\")")
+                }
+                _ => name.to_string(),
             };
         }
         let array =

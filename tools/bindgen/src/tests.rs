@@ -387,7 +387,7 @@ fn a_method_of_python_has_words_defaults_and_lengths_from_the_shapes_of_arrays()
     def set_rhs(self, kind: str, rhs: Any, first: int = 0) -> None:
         \"\"\"Replaces c or h of rows from `first` on. kind: \"contact\" or \"equality\".\"\"\"
         rhs = numbers(rhs, \"rhs\", (None,))
-        call(\"rows_rhs\", self._handle, one_of(KINDS, kind, \"kind\"), first, rhs.size, at(rhs))
+        call(\"rows_rhs\", self._handle, one_of(KINDS, kind, \"kind\"), first, rhs.size, rhs)
 ";
     let text = of_rows("_methods.py");
     assert!(text.contains(expected), "{text}");
