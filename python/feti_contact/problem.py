@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-import functools
 import logging
 import operator
 import os
@@ -101,9 +100,9 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
         self._run("problem_write", self._handle, os.fsencode(path))
 
     @classmethod
-    def read(cls, path: Union[str, os.PathLike], width: Optional[int] = None) -> Problem:
+    def read(cls, path: Union[str, os.PathLike], width: Optional[int] = None, communicator: Any = None) -> Problem:
         """The problem of a file. width: largest number of the host + 1, for arrays over all bodies, if bodies have numbers."""
-        p = cls()
+        p = cls(communicator=communicator)
         call("problem_read", p._handle, os.fsencode(path))
         p._width = width
         for number in range(p._counts()[0]):
@@ -290,7 +289,7 @@ class Problem(ProblemCalls, contextlib.AbstractContextManager):
         progress: True shows a line by tqdm, if it is installed; a function gets a Progress, a true result cancels."""
         self.set(**options)
         with _bar() if progress is True else contextlib.nullcontext(progress or None) as watch:
-            info = written("solve", self._handle, of=(Info,), by=functools.partial(self._run, watch=watch))
+            info = written("solve", self._handle, of=(Info,), by=lambda *arguments: self._run(*arguments, watch=watch))
         if info.status:
             warnings.warn(f"{info.name}: {LIBRARY.feti_status_text(info.status).decode()}", FetiWarning, stacklevel=2)
         return info
