@@ -101,17 +101,14 @@ class Body(BodyCalls, Part):
         Option `pieces` and coordinates come before. The matrices are symmetric; only the triangle `storage` is read."""
         dofs, matrices = [integers(d, "dofs", (None,), np.int64) for d in listed(dofs, "dofs")], listed(matrices, "matrices")
         ptr = np.concatenate([[0], np.cumsum([d.size for d in dofs], dtype=np.int64)])
-        dof = np.concatenate(dofs) if dofs else np.empty(0, dtype=np.int64)
+        dof = np.concatenate([np.empty(0, dtype=np.int64), *dofs])
         if len(matrices) != len(dofs):
             raise ValueError(f"matrices: {len(matrices)} for {len(dofs)} elements")
         ke = [numbers(m, f"matrices[{e}]", (d.size, d.size)) for e, (m, d) in enumerate(zip(matrices, dofs))]
-        if storage != "full":
-            triangle = np.triu_indices if one_of(STORAGE, storage, "storage") == _raw.FETI_UPPER else np.tril_indices
-            ke = [m[triangle(len(m))] for m in ke]
-            storage = TURNED[storage]  # by rows, not by columns
+        part = one_of({"full": lambda n: slice(n), "lower": np.tril_indices, "upper": np.triu_indices}, storage, "storage")
         self._call("body_mesh_*", len(dofs), ptr, dof, 0)
-        ke = np.concatenate([m.ravel() for m in ke]) if ke else np.empty(0)
-        self._call("body_elements", 0, len(dofs), ke, STORAGE[storage])
+        ke = np.concatenate([np.empty(0), *(m[part(len(m))].ravel() for m in ke)])
+        self._call("body_elements", 0, len(dofs), ke, STORAGE[TURNED[storage]])  # by rows, not by columns
         self.problem._kept.pop(self.number, None)
 
     def operator(self, diagonal, kplus: Callable, k: Callable, concurrent: bool = False) -> None:
