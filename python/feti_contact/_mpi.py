@@ -75,11 +75,12 @@ class Stream:
 
     def run(self, work, cancel):
         """`work()`, on this thread if it may be the only one for MPI; otherwise Ctrl-C is a `cancel()`, and is raised when all ranks have ended."""
-        self.error = None
         try:
             return interruptible(work, cancel) if MPI.Query_thread() >= MPI.THREAD_SERIALIZED else work()
         except FetiError as failed:
             raise failed from self.error
+        finally:
+            self.error = None
 
 
 def portions(size, data):

@@ -37,7 +37,8 @@ class _Calls:
 
     def __init__(self):
         self.error, self.watch = None, None
-        self.on_log = _raw.feti_log_fn(lambda _, level, text: self.catch(lambda: self.write(level, text), -1))
+        levels = {1: logging.INFO, 2: logging.DEBUG}
+        self.on_log = _raw.feti_log_fn(lambda _, level, text: self.catch(lambda: LOG.log(levels.get(level, 5), text.decode(errors="replace")), -1))
         self.on_progress = _raw.feti_progress_fn(lambda _, now: self.catch(lambda: int(bool(self.watch(Progress._of(bytes(now.contents))))), -1))
 
     def catch(self, work, failed):
@@ -46,9 +47,6 @@ class _Calls:
         except BaseException as error:  # raised again by the call that runs
             self.error = self.error or error
             return failed
-
-    def write(self, level, text):
-        LOG.log({1: logging.INFO, 2: logging.DEBUG}.get(level, 5), text.decode(errors="replace"))
 
 
 class Problem(ProblemCalls, contextlib.AbstractContextManager):
