@@ -223,3 +223,22 @@ fn written(ty: &Type) -> &'static str {
 fn tuple<T: std::borrow::Borrow<str>>(items: &[T]) -> String {
     format!("({}{})", items.join(", "), if items.len() == 1 { "," } else { "" })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::TABLE;
+
+    #[test]
+    fn every_line_of_the_table_is_a_method_of_the_python_package() {
+        let (table, made) = (TABLE, include_str!("../../../python/feti_contact/_methods.py"));
+        let names = table
+            .lines()
+            .filter(|line| !line.starts_with(['#', ' ', '>']))
+            .filter_map(|line| line.split_once('('));
+        let missing: Vec<_> = names
+            .map(|(name, _)| name.trim_start_matches('@'))
+            .filter(|name| !made.contains(&format!("def {name}(")))
+            .collect();
+        assert!(missing.is_empty(), "functions of C that are not there: {missing:?}");
+    }
+}
