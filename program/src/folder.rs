@@ -7,7 +7,9 @@ use std::path::Path;
 
 use feti_contact::solver::{FrictionInput, Modes, Problem, RowKind, RowsInput, Storage, TripletInput};
 
-use crate::contents::{Contents, Matrix, MODES};
+use feti_contact::linalg::Csr;
+
+use crate::contents::{word, Contents};
 
 const KINDS: [(&str, &str, RowKind); 2] =
     [("B.mtx", "c.txt", RowKind::Inequality), ("H.mtx", "h.txt", RowKind::Equality)];
@@ -278,37 +280,44 @@ fn lines(values: &[f64]) -> String {
 }
 
 /// The entries of a matrix, from 1.
-fn mtx(matrix: &Matrix, columns: usize, symmetry: &str) -> String {
-    let rows = matrix.rows();
-    let mut out =
-        format!("%%MatrixMarket matrix coordinate real {symmetry}\n{rows} {columns} {}\n", matrix.val.len());
+fn mtx<E: Iterator<Item = (usize, f64)>>(
+    symmetry: &str,
+    [rows, columns, entries]: [usize; 3],
+    row: impl Fn(usize) -> E,
+) -> String {
+    let mut out = format!("%%MatrixMarket matrix coordinate real {symmetry}\n{rows} {columns} {entries}\n");
     for i in 0..rows {
-        for (j, value) in matrix.row(i) {
+        for (j, value) in row(i) {
             let _ = writeln!(out, "{} {} {value:e}", i + 1, j + 1);
         }
     }
     out
 }
 
+fn general(rows: &Csr) -> String {
+    mtx("general", [rows.rows(), rows.cols, rows.val.len()], |i| rows.row(i))
+}
+
 /// Every file of the problem; numbers come back bit by bit.
 pub fn write(all: &Contents, folder: &Path) -> Result<(), String> {
-    let unknowns = all.starts[all.bodies.len()];
     let (mut loads, mut places) = (Vec::new(), String::from("# node direction x y z\n"));
     for (p, body) in all.bodies.iter().enumerate() {
-        put(folder, &format!("K{}.mtx", p + 1), &mtx(&body.k, body.n, "symmetric"))?;
-        let (said, columns, basis) = match &body.motions {
-            Some(of) => (MODES.get(of.modes).unwrap_or(&MODES[0]), of.columns, &of.basis[..]),
-            None => (&"unknown", 0, &[][..]),
-        };
-        if columns > 0 || body.motions.is_none() {
-            let head = format!("%%MatrixMarket matrix array real general\n% {said}\n{} {columns}\n", body.n);
+        let n = body.n();
+        let k = body.k().ok_or_else(|| format!("body {p} has no stiffness"))?;
+        let text = mtx("symmetric", [n, n, k.val.len()], |i| k.lower_row(i));
+        put(folder, &format!("K{}.mtx", p + 1), &text)?;
+        let motions = body.given.body.null_space.as_deref();
+        let (said, columns, basis) = motions
+            .map_or(("unknown", 0, &[][..]), |of| (word(of.modes), of.vectors.cols, &of.vectors.data[..]));
+        if columns > 0 || motions.is_none() {
+            let head = format!("%%MatrixMarket matrix array real general\n% {said}\n{n} {columns}\n");
             put(folder, &format!("R{}.mtx", p + 1), &(head + &lines(basis)))?;
         }
         loads.extend_from_slice(&body.load);
-        for i in 0..body.n {
-            let _ = match &body.xyz {
+        for i in 0..n {
+            let _ = match body.xyz() {
                 Some((xyz, dir)) => {
-                    let [x, y, z] = [0, 1, 2].map(|k| xyz[3 * i + k]);
+                    let [x, y, z] = xyz[i];
                     writeln!(places, "{} {} {x:e} {y:e} {z:e}", i + 1, dir[i])
                 }
                 None => writeln!(places, "{} 0 0 0 0", i + 1),
@@ -316,33 +325,35 @@ pub fn write(all: &Contents, folder: &Path) -> Result<(), String> {
         }
     }
     put(folder, "f.txt", &lines(&loads))?;
-    if all.bodies.iter().any(|body| body.xyz.is_some()) {
+    if all.bodies.iter().any(|body| body.xyz().is_some()) {
         put(folder, "dofs.txt", &places)?;
     }
     for ((matrix, rhs, _), rows) in KINDS.iter().zip(&all.rows) {
         if rows.rhs.is_empty() {
             continue;
         }
-        put(folder, matrix, &mtx(&rows.matrix, unknowns, "general"))?;
+        put(folder, matrix, &general(&rows.matrix))?;
         put(folder, rhs, &lines(&rows.rhs))?;
-        if rows.inv_k.iter().any(|inv_k| *inv_k != 0.0) {
-            put(folder, &format!("inv_k_{rhs}"), &lines(&rows.inv_k))?;
+        if rows.compliance.iter().any(|inv_k| *inv_k != 0.0) {
+            put(folder, &format!("inv_k_{rhs}"), &lines(&rows.compliance))?;
         }
     }
     if !all.options.is_empty() {
         put(folder, "options.txt", &format!("{}\n", all.options))?;
     }
-    if all.friction.normal.is_empty() {
+    let of = all.friction;
+    if of.nodes.is_empty() {
         return Ok(());
     }
-    put(folder, "T.mtx", &mtx(&all.friction.matrix, unknowns, "general"))?;
-    let of = &all.friction;
+    put(folder, "T.mtx", &general(&of.rows.matrix))?;
     let mut laws = String::from("# contact row, coefficient, bound, compliance, slips\n");
-    for k in 0..of.normal.len() {
-        let slips: Vec<_> =
-            of.s_old[of.dim * k..of.dim * (k + 1)].iter().map(|slip| format!("{slip:e}")).collect();
-        let law = [of.coefficient[k], of.bound[k], of.inv_kt[k]].map(|x| format!("{x:e}"));
-        let _ = writeln!(laws, "{} {} {}", of.normal[k] + 1, law.join(" "), slips.join(" "));
+    for node in &of.nodes {
+        let _ = write!(laws, "{}", node.normal.map_or(0, |row| row + 1));
+        let law = [node.coefficient, node.bound, of.rows.compliance[node.first]];
+        for x in law.iter().chain(&of.rows.rhs[node.rows()]) {
+            let _ = write!(laws, " {x:e}");
+        }
+        laws.push('\n');
     }
     put(folder, "friction.txt", &laws)
 }

@@ -2,13 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use feti_contact::solver::{Digits, Modes};
+
 use crate::contents::{Body, Contents};
 use crate::show::{median, Suspicion};
 
-/// Values that K has at least, in different sizes, before its digits say something.
-const VALUES: usize = 32;
-/// Digits that numbers have which were written with few: single precision, or 8 decimal places.
-const FEW: usize = 8;
 /// A motion is resisted by rounding of double precision up to this part of its terms, with a row of 100 entries.
 const ROUNDING: f64 = 1e-12;
 /// Steel on rubber is 1e5; MPa for Pa is 1e6.
@@ -17,18 +15,13 @@ const STIFFER: f64 = 2e5;
 pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     let mut found = Vec::new();
     for (p, body) in all.bodies.iter().enumerate() {
-        let (digits, is_round) = (digits(body), distinct(body) < VALUES);
-        if digits <= FEW
-            && (resisted(body) > Some(ROUNDING)
-                || !is_round && body.motions.as_ref().is_none_or(|of| of.columns == 0))
-        {
-            let what = match is_single(body) {
-                true => "the entries of K have single precision".to_owned(),
-                false => format!("the entries of K have only {digits} digits"),
-            };
+        let motions = body.given.body.null_space.as_ref();
+        let Some(digits) = body.digits() else { continue };
+        if resisted(body) > Some(ROUNDING) || motions.is_none_or(|of| of.vectors.cols == 0) {
+            let only = if digits == Digits::Single { "" } else { "only " };
             found.push(Suspicion::new(
                 format!("body {p}"),
-                what,
+                format!("the entries of K have {only}{digits}"),
                 "write K with all digits of double precision (17), not in single precision",
             ));
         }
@@ -45,44 +38,15 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     found
 }
 
-/// Significant decimal digits of the entries of K, up to 17; single precision counts as 8.
-pub fn digits(body: &Body) -> usize {
-    match is_single(body) {
-        true => FEW.min(decimal(&body.k.val)),
-        false => decimal(&body.k.val),
-    }
-}
-
-fn is_single(body: &Body) -> bool {
-    let values = &body.k.val;
-    !values.is_empty() && values.iter().all(|v| f64::from(*v as f32) == *v)
-}
-
-/// The rounding of a sum leaves more digits in a few entries: all but one of 32 have so many.
-fn decimal(values: &[f64]) -> usize {
-    let own = |v: &f64| (1..17).find(|d| format!("{v:.*e}", d - 1).parse() == Ok(*v)).unwrap_or(17);
-    let mut digits: Vec<usize> =
-        values.iter().filter(|v| **v != 0.0).step_by(values.len() / 4096 + 1).map(own).collect();
-    digits.sort_unstable();
-    digits.get((digits.len() * 31 / 32).min(digits.len().saturating_sub(1))).copied().unwrap_or(0)
-}
-
-fn distinct(body: &Body) -> usize {
-    let mut sizes: Vec<u64> = body.k.val.iter().map(|v| v.abs().to_bits()).collect();
-    sizes.sort_unstable();
-    sizes.dedup();
-    sizes.len()
-}
-
 /// The largest (K R)_i relative to its terms, over the motions that are declared as exact.
 pub fn resisted(body: &Body) -> Option<f64> {
-    let motions = body.motions.as_ref().filter(|of| of.columns > 0 && of.modes == 0)?;
-    let mut worst = 0.0f64;
-    for r in motions.basis.chunks_exact(body.n.max(1)) {
-        let (y, size) = body.product(r);
-        y.iter()
-            .zip(&size)
-            .for_each(|(y, size)| worst = worst.max(if *size > 0.0 { y.abs() / size } else { 0.0 }));
+    let motions = body.given.body.null_space.as_ref().filter(|of| of.modes == Modes::Exact)?;
+    let (k, n) = (body.k().filter(|_| motions.vectors.cols > 0)?, body.n());
+    let (mut y, mut terms, mut worst) = (vec![0.0; n], vec![0.0; n], 0.0f64);
+    for r in motions.vectors.data.chunks_exact(n.max(1)) {
+        k.mul_with_terms(r, &mut y, &mut terms);
+        let parts = y.iter().zip(&terms).filter(|(_, term)| **term > 0.0);
+        worst = parts.map(|(y, term)| y.abs() / term).fold(worst, f64::max);
     }
     Some(worst)
 }
@@ -91,7 +55,7 @@ pub fn resisted(body: &Body) -> Option<f64> {
 fn stiffnesses(all: &Contents) -> BTreeMap<(usize, usize), [f64; 2]> {
     let diagonals: Vec<_> = all.bodies.iter().map(Body::diagonal).collect();
     let mut at: BTreeMap<(usize, usize), [Vec<f64>; 2]> = BTreeMap::new();
-    let rows = &all.rows[0];
+    let rows = all.rows[0];
     for i in (0..rows.rhs.len()).filter(|&i| rows.rhs[i].is_finite()) {
         let mut bodies: Vec<usize> = rows.matrix.row(i).map(|(j, _)| all.body_of(j)).collect();
         bodies.sort_unstable();

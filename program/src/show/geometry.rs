@@ -1,6 +1,8 @@
 //! What is suspicious in rows and bodies with coordinates: normals and gaps that do not fit the places of the unknowns.
 
-use crate::contents::{Contents, Rows};
+use feti_contact::constraints::RowSet;
+
+use crate::contents::Contents;
 use crate::show::rows::groups;
 use crate::show::{listed, Suspicion};
 
@@ -25,10 +27,10 @@ struct Seen {
 
 pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     let mut found = Vec::new();
-    let rows = &all.rows[0];
+    let rows = all.rows[0];
     for (bodies, own) in groups(all, rows) {
         let [a, .., b] = [&bodies[..], &bodies[..]].concat()[..] else { continue };
-        if bodies.len() > 2 || bodies.iter().any(|p| all.bodies[*p].xyz.is_none()) {
+        if bodies.len() > 2 || bodies.iter().any(|p| all.bodies[*p].xyz().is_none()) {
             continue;
         }
         let all_seen = own.iter().map(|&i| see(all, rows, i, [a, b]));
@@ -47,21 +49,21 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     found
 }
 
-fn see(all: &Contents, rows: &Rows, row: usize, bodies: [usize; 2]) -> Seen {
+fn see(all: &Contents, rows: &RowSet, row: usize, bodies: [usize; 2]) -> Seen {
     let mut seen = Seen { row, normal: [[0.0; 3]; 2], place: [[0.0; 3]; 2], gap: 0.0, size: 0.0 };
     let mut weight = [0.0; 2];
     for (j, value) in rows.matrix.row(row) {
         let p = all.body_of(j);
         let (i, side) = (j - all.starts[p], usize::from(p == bodies[1] && bodies[0] != bodies[1]));
-        let Some((xyz, dir)) = &all.bodies[p].xyz else { continue };
+        let Some((xyz, dir)) = all.bodies[p].xyz() else { continue };
         let Some(d) = usize::try_from(dir[i] - 1).ok().filter(|d| *d < 3) else { continue };
         seen.normal[side][d] += value;
         weight[side] += value.abs();
         for k in 0..3 {
-            seen.place[side][k] += value.abs() * xyz[3 * i + k];
+            seen.place[side][k] += value.abs() * xyz[i][k];
         }
-        seen.gap -= value * xyz[3 * i + d];
-        seen.size += (value * xyz[3 * i + d]).abs();
+        seen.gap -= value * xyz[i][d];
+        seen.size += (value * xyz[i][d]).abs();
     }
     for side in 0..2 {
         seen.place[side].iter_mut().for_each(|x| *x /= weight[side]);
@@ -111,14 +113,12 @@ fn tell(found: &mut Vec<Suspicion>, rows: &[usize], what: &str, remedy: &'static
 /// The points of all rows lie far apart, compared to the size of the smaller body.
 fn apart(all: &Contents, seen: &[Seen], bodies: [usize; 2], found: &mut Vec<Suspicion>) -> bool {
     let sizes = bodies.map(|p| {
-        let xyz = all.bodies[p].xyz.as_ref().map_or(&[][..], |(xyz, _)| xyz);
-        let [low, high] = xyz.chunks_exact(3).fold(
-            [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
-            |[mut low, mut high], x| {
+        let xyz = all.bodies[p].xyz().map_or(&[][..], |(xyz, _)| xyz);
+        let [low, high] =
+            xyz.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[mut low, mut high], x| {
                 (0..3).for_each(|k| (low[k], high[k]) = (low[k].min(x[k]), high[k].max(x[k])));
                 [low, high]
-            },
-        );
+            });
         distance(&low, &high)
     });
     let smaller = usize::from(sizes[1] < sizes[0]);
@@ -146,7 +146,7 @@ fn moved(seen: &[Seen], found: &mut Vec<Suspicion>) {
 }
 
 /// The gap is the distance of the two places along the normal.
-fn gaps(rows: &Rows, seen: &[Seen], found: &mut Vec<Suspicion>) {
+fn gaps(rows: &RowSet, seen: &[Seen], found: &mut Vec<Suspicion>) {
     let fits = |of: &Seen, sign: f64| (rows.rhs[of.row] - sign * of.gap).abs() <= AGREE * of.size;
     let finite = |of: &Seen| rows.rhs[of.row].is_finite();
     let most = seen.iter().filter(|of| finite(of)).map(|of| rows.rhs[of.row].abs()).fold(0.0, f64::max);

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::contents::{Contents, Rows};
+use feti_contact::constraints::RowSet;
+
+use crate::contents::Contents;
 use crate::show::{listed, median, Suspicion};
 
 /// Gaps of fewer rows may all be negative by chance.
@@ -16,7 +18,7 @@ const ROUNDING: f64 = 1e-14;
 const KINDS: [&str; 2] = ["contact row", "equality row"];
 
 /// The rows between the same bodies.
-pub fn groups(all: &Contents, rows: &Rows) -> BTreeMap<Vec<usize>, Vec<usize>> {
+pub fn groups(all: &Contents, rows: &RowSet) -> BTreeMap<Vec<usize>, Vec<usize>> {
     let mut groups = BTreeMap::<Vec<usize>, Vec<usize>>::new();
     for i in 0..rows.rhs.len() {
         let touched = rows.matrix.row(i).filter(|(_, value)| *value != 0.0);
@@ -30,7 +32,7 @@ pub fn groups(all: &Contents, rows: &Rows) -> BTreeMap<Vec<usize>, Vec<usize>> {
 
 pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     let mut found = Vec::new();
-    for (rows, kind) in all.rows.iter().zip(KINDS) {
+    for (rows, kind) in all.rows.into_iter().zip(KINDS) {
         let groups = groups(all, rows);
         for (bodies, own) in groups.iter().filter(|(bodies, own)| !bodies.is_empty() && own.len() > 1) {
             let between = listed(if bodies.len() > 1 { "bodies" } else { "body" }, bodies);
@@ -48,7 +50,7 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
 }
 
 /// All gaps of a pair below 0, or all +infinity.
-fn gaps(rows: &Rows, own: &[usize], between: &str) -> Option<Suspicion> {
+fn gaps(rows: &RowSet, own: &[usize], between: &str) -> Option<Suspicion> {
     let all = |is: fn(f64) -> bool| own.iter().all(|&i| is(rows.rhs[i]));
     if own.len() >= FEW && all(|gap| gap < 0.0) {
         let remedy = "check the sign of the gaps, c = n'(x_foot - x_s), and of the normals; nothing to do for a press fit";
@@ -59,12 +61,12 @@ fn gaps(rows: &Rows, own: &[usize], between: &str) -> Option<Suspicion> {
         .then(|| Suspicion::new(between.to_owned(), what, "give the gaps of the pairs that may close"))
 }
 
-fn norm(rows: &Rows, i: usize) -> f64 {
+fn norm(rows: &RowSet, i: usize) -> f64 {
     rows.matrix.row(i).map(|(_, value)| value * value).sum::<f64>().sqrt()
 }
 
 /// A row far longer or shorter than the others of its pair.
-fn lengths(rows: &Rows, own: &[usize], kind: &str, found: &mut Vec<Suspicion>) {
+fn lengths(rows: &RowSet, own: &[usize], kind: &str, found: &mut Vec<Suspicion>) {
     let lengths: Vec<f64> = own.iter().map(|&i| norm(rows, i)).collect();
     let Some(middle) = median(lengths.clone()) else { return };
     let far = |length: f64| length > 0.0 && (length > LENGTH * middle || length * LENGTH < middle);
@@ -84,7 +86,7 @@ fn lengths(rows: &Rows, own: &[usize], kind: &str, found: &mut Vec<Suspicion>) {
 }
 
 /// Rows with the same unknowns whose directions agree, exactly or nearly, and whose gaps agree, too.
-fn twice(rows: &Rows, kind: &str, found: &mut Vec<Suspicion>) {
+fn twice(rows: &RowSet, kind: &str, found: &mut Vec<Suspicion>) {
     let mut alike = BTreeMap::<Vec<usize>, Vec<(usize, Vec<f64>)>>::new();
     let (mut same, mut nearly) = (Vec::new(), Vec::new());
     for i in 0..rows.rhs.len() {
@@ -128,7 +130,7 @@ fn twice(rows: &Rows, kind: &str, found: &mut Vec<Suspicion>) {
 /// A row of one body between rows that have the same length on it, but go on to a second body.
 fn one_sided(
     all: &Contents,
-    rows: &Rows,
+    rows: &RowSet,
     groups: &BTreeMap<Vec<usize>, Vec<usize>>,
     found: &mut Vec<Suspicion>,
 ) {
