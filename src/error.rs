@@ -42,23 +42,59 @@ pub enum Kind {
 impl Kind {
     /// The name of its status in C.
     pub fn status(&self) -> &'static str {
+        self.named().0
+    }
+
+    /// What to do; docs/statuses.md has these texts, with links.
+    pub fn cure(&self) -> &'static str {
+        self.named().1
+    }
+
+    fn named(&self) -> (&'static str, &'static str) {
         match self {
-            Self::Argument(_) => "FETI_ARGUMENT",
-            Self::Memory => "FETI_MEMORY",
-            Self::State => "FETI_STATE",
-            Self::LoadNotHeld => "FETI_LOAD_NOT_HELD",
-            Self::Slides => "FETI_SLIDES",
-            Self::GapsContradict => "FETI_GAPS_CONTRADICT",
-            Self::NullSpace => "FETI_NULL_SPACE",
-            Self::Indefinite => "FETI_INDEFINITE",
-            Self::Overflow => "FETI_OVERFLOW",
-            Self::Internal => "FETI_INTERNAL",
-            Self::Unsupported => "FETI_UNSUPPORTED",
-            Self::Cancelled => "FETI_CANCELLED",
-            Self::TimeOver => "FETI_TIME",
-            Self::Callback => "FETI_CALLBACK",
-            Self::Io => "FETI_IO",
-            Self::Communication => "FETI_COMMUNICATION",
+            Self::Argument(_) => (
+                "FETI_ARGUMENT",
+                "the text names the entry. NaN or infinity in K, f or gaps: the loop diverges, cut the step",
+            ),
+            Self::Memory => {
+                ("FETI_MEMORY", "end, or set memory_limit: dual operators that do not fit become implicit")
+            }
+            Self::State => ("FETI_STATE", "order of calls; the text says what is missing"),
+            Self::LoadNotHeld => (
+                "FETI_LOAD_NOT_HELD",
+                "usually a pair is missing, or its normal has the wrong sign: give rows to all pairs that could close, \
+                 not only to closed ones. Or reduce the load, or add a support",
+            ),
+            Self::Slides => ("FETI_SLIDES", "cut the step, support the body, or add the missing pressure"),
+            Self::GapsContradict => (
+                "FETI_GAPS_CONTRADICT",
+                "check gaps and their signs; cut the step; make rows compliant (feti_rows_compliance)",
+            ),
+            Self::NullSpace => (
+                "FETI_NULL_SPACE",
+                "basis of an old position: give it anew. K with stress or curvature terms: soft motions. In doubt \
+                 give coordinates, or nothing",
+            ),
+            Self::Indefinite => (
+                "FETI_INDEFINITE",
+                "check the elements at this place; cut the step. If a body floats, give soft motions. If it stays \
+                 however small the step is, the equilibrium is unstable. With friction another rest is not excluded",
+            ),
+            Self::Overflow => {
+                ("FETI_OVERFLOW", "check the sizes; functions for 64-bit indices end in _i64")
+            }
+            Self::Internal => ("FETI_INTERNAL", "feti_problem_destroy; please send a problem file"),
+            Self::Unsupported => ("FETI_UNSUPPORTED", "the text says what is"),
+            Self::Cancelled => (
+                "FETI_CANCELLED",
+                "end the loop; feti_displacement returns FETI_STATE if there was no step yet",
+            ),
+            Self::TimeOver => {
+                ("FETI_TIME", "raise time_limit; the next call uses the factors that are complete")
+            }
+            Self::Callback => ("FETI_CALLBACK", "the text says what your function returned"),
+            Self::Io => ("FETI_IO", "the text has path and reason"),
+            Self::Communication => ("FETI_COMMUNICATION", "end"),
         }
     }
 }

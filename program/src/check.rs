@@ -15,7 +15,7 @@ pub fn check(of: &ArgMatches) -> Result<End, String> {
     live::bar(&mut problem);
     let ready = problem.setup();
     live::end_bar();
-    ready.map_err(|error| format!("{}: {error}", end::of(&Err(error.kind)).0))?;
+    ready.map_err(|error| format!("{}: {error}", error.kind.status()))?;
     let file = Path::new(command::file(of));
     let answer = match command::one(of, "answer") {
         Some(folder) => {

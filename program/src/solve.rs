@@ -21,7 +21,8 @@ pub fn solve(of: &ArgMatches) -> Result<End, String> {
     }
     let solved = problem.solve();
     live::end_bar();
-    let (name, status) = end::of(&solved.as_ref().map(|report| report.outcome).map_err(|error| error.kind));
+    let (name, status, cure) =
+        end::of(&solved.as_ref().map(|report| report.outcome).map_err(|error| error.kind));
     let why = solved
         .as_ref()
         .err()
@@ -33,14 +34,14 @@ pub fn solve(of: &ArgMatches) -> Result<End, String> {
     }
     let text = match of.get_flag("json") {
         true => as_json(&problem, name, status, why.as_deref(), report.as_ref(), &book),
-        false => as_tables(&problem, name, why.as_deref(), report.as_ref(), &book),
+        false => as_tables(&problem, (name, cure), why.as_deref(), report.as_ref(), &book),
     };
     Ok(End { text, status })
 }
 
 fn as_tables(
     problem: &Problem,
-    name: &str,
+    (name, cure): (&str, &str),
     why: Option<&str>,
     report: Option<&Report>,
     book: &Book,
@@ -53,8 +54,8 @@ fn as_tables(
     if let Some(why) = why {
         out += &format!("{why}\n");
     }
-    if name != "FETI_OK" {
-        out += &format!("remedy: {}\n", end::cure(name));
+    if !cure.is_empty() {
+        out += &format!("remedy: {cure}\n");
     }
     if let Some(report) = report {
         out += &format!(

@@ -2,7 +2,7 @@
 
 use crate::certificate::Certificate;
 use crate::dual::Dual;
-use crate::error::Result;
+use crate::error::{Kind, Result};
 use crate::linalg::Operator;
 use crate::model::{Sizes, SolvedModel};
 use crate::progress::PhaseReport;
@@ -32,14 +32,32 @@ pub enum Outcome {
 impl Outcome {
     /// The name of its status in C.
     pub fn status(&self) -> &'static str {
+        self.named().0
+    }
+
+    /// What to do, as [`Kind::cure`].
+    pub fn cure(&self) -> &'static str {
+        self.named().1
+    }
+
+    fn named(&self) -> (&'static str, &'static str) {
         match self {
-            Self::Solved => "FETI_OK",
-            Self::Marginal => "FETI_MARGINAL",
-            Self::Inaccurate => "FETI_INACCURATE",
-            Self::Stalled => "FETI_STALLED",
-            Self::Iterations => "FETI_ITERATIONS",
-            Self::Time => "FETI_TIME",
-            Self::Cancelled => "FETI_CANCELLED",
+            Self::Solved => ("FETI_OK", ""),
+            Self::Marginal => {
+                ("FETI_MARGINAL", "go on; the log says which. data_accuracy is how small a resistance counts")
+            }
+            Self::Inaccurate => (
+                "FETI_INACCURATE",
+                "the certificate names the worst place (feti_check, feti_check_friction); K may be nearly singular or \
+                 have few digits",
+            ),
+            Self::Stalled => (
+                "FETI_STALLED",
+                "smaller steps, another start, a larger direct_limit; then send a problem file",
+            ),
+            Self::Iterations => ("FETI_ITERATIONS", "raise max_steps"),
+            Self::Time => (Kind::TimeOver.status(), Kind::TimeOver.cure()),
+            Self::Cancelled => (Kind::Cancelled.status(), Kind::Cancelled.cure()),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What the library itself finds: errors, findings, warnings and notes of its log.
 
+use feti_contact::error::Kind;
 use feti_contact::solver::{LogLevel, Problem};
 
 use crate::show::{listed, Suspicion};
@@ -31,7 +32,8 @@ pub fn suspicions(problem: &mut Problem) -> Vec<Suspicion> {
     let solved = problem.solve();
     live::end_bar();
     let mut found = Vec::new();
-    let (name, status) = end::of(&solved.as_ref().map(|report| report.outcome).map_err(|error| error.kind));
+    let (name, status, cure) =
+        end::of(&solved.as_ref().map(|report| report.outcome).map_err(|error| error.kind));
     if status != end::OK {
         let why = solved.as_ref().err().cloned().or_else(|| problem.shortfall());
         let (place, what) = why.map_or((String::new(), String::new()), |error| {
@@ -43,7 +45,7 @@ pub fn suspicions(problem: &mut Problem) -> Vec<Suspicion> {
         found.push(Suspicion::new(
             place,
             if what.is_empty() { name.to_owned() } else { format!("{name}: {what}") },
-            end::cure(name),
+            cure,
         ));
     }
     let findings = problem.findings().ok();
@@ -56,11 +58,7 @@ pub fn suspicions(problem: &mut Problem) -> Vec<Suspicion> {
             let rows: Vec<usize> = of.rows(kind).map(|(row, _)| row).collect();
             if !rows.is_empty() {
                 let what = "contradicts the other rows of the proof";
-                found.push(Suspicion::new(
-                    listed(kind.name(), &rows),
-                    what,
-                    end::cure("FETI_GAPS_CONTRADICT"),
-                ));
+                found.push(Suspicion::new(listed(kind.name(), &rows), what, Kind::GapsContradict.cure()));
             }
         }
     }

@@ -1,5 +1,8 @@
 //! What the documents say of the program is what it has.
 
+use feti_contact::error::Kind;
+use feti_contact::solver::Outcome;
+
 use crate::show::{Spoilt, SPOILT};
 use crate::support::said;
 
@@ -40,4 +43,56 @@ fn every_spoilt_file_of_the_test_is_a_row_of_the_table() {
     let row = |(name, _, place, _): &Spoilt| format!("| {name} | {place}:");
     let missing: Vec<_> = SPOILT.iter().map(row).filter(|row| !document.contains(row)).collect();
     assert!(missing.is_empty(), "docs/program.md has no row for {missing:?}");
+}
+
+/// The page adds links and the marks of code; a link in brackets at the end of a cure is of the page alone.
+#[test]
+fn the_cures_of_the_page_are_those_that_the_library_has() {
+    let kinds = [
+        Kind::Argument(""),
+        Kind::Memory,
+        Kind::State,
+        Kind::LoadNotHeld,
+        Kind::Slides,
+        Kind::GapsContradict,
+        Kind::NullSpace,
+        Kind::Indefinite,
+        Kind::Overflow,
+        Kind::Internal,
+        Kind::Unsupported,
+        Kind::Cancelled,
+        Kind::TimeOver,
+        Kind::Callback,
+        Kind::Io,
+        Kind::Communication,
+    ];
+    let outcomes = [
+        Outcome::Solved,
+        Outcome::Marginal,
+        Outcome::Inaccurate,
+        Outcome::Stalled,
+        Outcome::Iterations,
+        Outcome::Time,
+        Outcome::Cancelled,
+    ];
+    let own = kinds.map(|kind| (kind.status(), kind.cure())).into_iter();
+    let page = read("docs/statuses.md");
+    for (status, cure) in own.chain(outcomes.map(|outcome| (outcome.status(), outcome.cure()))) {
+        let row = page.lines().find(|line| line.starts_with(&format!("| `{status}` |"))).unwrap();
+        let cell = row.trim_end_matches([' ', '|']).rsplit("| ").next().unwrap().replace('`', "");
+        assert!(cure.is_empty() || plain(&cell) == cure, "{status}: {}\n{cure}", plain(&cell));
+    }
+}
+
+/// Without links: `[text](page)` is its text, a bracket at the end that is a link alone is nothing.
+fn plain(cell: &str) -> String {
+    let cell = cell.split_once(" ([").filter(|(_, rest)| rest.ends_with("))")).map_or(cell, |of| of.0);
+    let mut parts = cell.split('[');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (shown, rest) = part.split_once("](").unwrap();
+        text += shown;
+        text += rest.split_once(')').unwrap().1;
+    }
+    text
 }
