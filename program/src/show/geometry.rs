@@ -186,7 +186,8 @@ fn lengths(seen: &[Seen], found: &mut Vec<Suspicion>) {
     );
 }
 
-/// A normal that neither of the two next rows has, where almost every row has that of a next one.
+/// A normal that neither of the two next rows has, on a face that is smooth without such rows: there every row has the normal of
+/// both next ones.
 fn turned(seen: &[Seen], found: &mut Vec<Suspicion>) {
     if seen.len() > MOST {
         return;
@@ -195,23 +196,26 @@ fn turned(seen: &[Seen], found: &mut Vec<Suspicion>) {
         let (a, b) = (&a.normal[0], &b.normal[0]);
         dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
     };
-    // of each row: its cosines with the two next rows, and theirs
-    let next = |of: &Seen| {
+    // cosines of a row with the two next rows, and theirs
+    let next = |of: &Seen, among: &[&Seen]| {
         let away = |other: &&Seen| distance(&other.place[0], &of.place[0]);
-        let mut others: Vec<&Seen> = seen.iter().filter(|other| other.row != of.row).collect();
+        let mut others: Vec<&Seen> = among.iter().copied().filter(|other| other.row != of.row).collect();
         others.select_nth_unstable_by(1, |a, b| away(a).total_cmp(&away(b)));
         [cosine(of, others[0]), cosine(of, others[1]), cosine(others[0], others[1])]
     };
-    let cosines: Vec<_> = seen.iter().map(next).collect();
-    let smooth = cosines.iter().filter(|[a, b, _]| a.max(*b) > 0.9).count();
-    if 4 * smooth < 3 * seen.len() {
+    let all: Vec<&Seen> = seen.iter().collect();
+    let points_elsewhere = |of: &&Seen| {
+        let [a, b, both] = next(of, &all);
+        both > 0.9 && a.max(b) < 0.3
+    };
+    let (elsewhere, others): (Vec<&Seen>, Vec<&Seen>) = seen.iter().partition(points_elsewhere);
+    let is_smooth = |of: &&Seen| next(of, &others)[..2].iter().all(|cosine| *cosine > 0.9);
+    if elsewhere.is_empty() || others.len() < FEW || !others.iter().all(is_smooth) {
         return;
     }
-    let elsewhere = seen.iter().zip(&cosines).filter(|(_, [a, b, both])| *both > 0.9 && a.max(*b) < 0.3);
-    let rows: Vec<usize> = elsewhere.map(|(of, _)| of.row).collect();
     tell(
         found,
-        &rows,
+        &elsewhere.iter().map(|of| of.row).collect::<Vec<_>>(),
         "its normal points elsewhere than those of the rows beside it",
         "turn the normal, or check the directions of its unknowns",
     );

@@ -7,8 +7,10 @@ use feti_contact::constraints::RowSet;
 use crate::contents::Contents;
 use crate::show::{listed, median, Suspicion};
 
-/// Gaps of fewer rows may all be negative by chance.
-const FEW: usize = 4;
+/// Gaps of fewer rows may all be negative by chance: signs drawn at random agree once in 2^6.
+const FEW: usize = 6;
+/// A row beside so many whole ones may have lost a side.
+const WHOLE: usize = 4;
 /// Lengths of the rows of a pair differ by the areas of nodes at most.
 const LENGTH: f64 = 1e4;
 /// Rows whose directions differ by less than this, and more than rounding, are one row, computed twice.
@@ -32,20 +34,15 @@ pub fn groups(all: &Contents, rows: &RowSet) -> BTreeMap<Vec<usize>, Vec<usize>>
 
 pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     let mut found = Vec::new();
-    for (rows, kind) in all.rows.into_iter().zip(KINDS) {
-        let groups = groups(all, rows);
-        for (bodies, own) in groups.iter().filter(|(bodies, own)| !bodies.is_empty() && own.len() > 1) {
-            let between = listed(if bodies.len() > 1 { "bodies" } else { "body" }, bodies);
-            if kind == KINDS[0] {
-                found.extend(gaps(rows, own, &between));
-            }
-            lengths(rows, own, kind, &mut found);
-        }
-        twice(rows, kind, &mut found);
-        if kind == KINDS[0] {
-            one_sided(all, rows, &groups, &mut found);
-        }
+    all.rows.into_iter().zip(KINDS).for_each(|(rows, kind)| twice(rows, kind, &mut found));
+    // an equality row says the same in any length, with any sign
+    let (rows, groups) = (all.rows[0], groups(all, all.rows[0]));
+    for (bodies, own) in groups.iter().filter(|(bodies, own)| !bodies.is_empty() && own.len() > 1) {
+        let between = listed(if bodies.len() > 1 { "bodies" } else { "body" }, bodies);
+        found.extend(gaps(rows, own, &between));
+        lengths(rows, own, &mut found);
     }
+    one_sided(all, rows, &groups, &mut found);
     found
 }
 
@@ -66,7 +63,7 @@ fn norm(rows: &RowSet, i: usize) -> f64 {
 }
 
 /// A row far longer or shorter than the others of its pair.
-fn lengths(rows: &RowSet, own: &[usize], kind: &str, found: &mut Vec<Suspicion>) {
+fn lengths(rows: &RowSet, own: &[usize], found: &mut Vec<Suspicion>) {
     let lengths: Vec<f64> = own.iter().map(|&i| norm(rows, i)).collect();
     let Some(middle) = median(lengths.clone()) else { return };
     let far = |length: f64| length > 0.0 && (length > LENGTH * middle || length * LENGTH < middle);
@@ -78,7 +75,7 @@ fn lengths(rows: &RowSet, own: &[usize], kind: &str, found: &mut Vec<Suspicion>)
             length / middle
         );
         found.push(Suspicion::new(
-            listed(kind, &rows),
+            listed(KINDS[0], &rows),
             what,
             "check the normal: a unit vector, times the area at most",
         ));
@@ -146,7 +143,7 @@ fn one_sided(
         };
         let is_pair = after.len() == 2 && after.contains(p) && bodies_of[before] == *after;
         let alike = |other: usize| (on(other, *p) / on(i, *p) - 1.0).abs() <= NEARLY;
-        is_pair && alike(i - 1) && alike(i + 1) && groups[*after].len() >= FEW * groups[bodies_of[i]].len()
+        is_pair && alike(i - 1) && alike(i + 1) && groups[*after].len() >= WHOLE * groups[bodies_of[i]].len()
     };
     let lost: Vec<usize> = (0..rows.rhs.len()).filter(is_lost).collect();
     if let Some(&[p]) = lost.first().map(|i| bodies_of[*i]) {

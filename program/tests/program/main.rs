@@ -1,5 +1,6 @@
 //! The program as a user runs it.
 
+mod alarms;
 mod commands;
 #[allow(dead_code)]
 #[path = "../../../tests/support/hand_over.rs"]
