@@ -72,8 +72,8 @@ impl Kind {
             ),
             Self::NullSpace => (
                 "FETI_NULL_SPACE",
-                "basis of an old position: give it anew. K with stress or curvature terms: soft motions. In doubt \
-                 give coordinates, or nothing",
+                "correct the motions; a basis of an old position has to be given anew. K with stress or curvature terms: soft \
+                 motions. In doubt give coordinates, or nothing",
             ),
             Self::Indefinite => (
                 "FETI_INDEFINITE",
