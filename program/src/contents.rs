@@ -1,8 +1,6 @@
 //! What a problem was given, as the library holds it, over all bodies.
 
-use feti_contact::constraints::{Friction, RowSet};
-use feti_contact::linalg::Symmetric;
-use feti_contact::solver::{Digits, Given, Modes, Problem, RowKind};
+use feti_contact::solver::{Digits, Friction, Given, Modes, Problem, RowKind, RowSet, Symmetric};
 
 pub struct Contents<'a> {
     /// Those that differ from their defaults.
@@ -56,10 +54,10 @@ impl<'a> Contents<'a> {
     pub fn left_out(&self) -> String {
         let any = |has: fn(&Body) -> bool| self.bodies.iter().any(has);
         let kinds = [
-            (any(|of| of.given.body.fixing.is_some()), "fixing unknowns"),
+            (any(|of| of.given.fixing.is_some()), "fixing unknowns"),
             (any(|of| of.given.numbered), "numbers of unknowns"),
             (
-                any(|of| of.xyz().is_some() && of.given.body.coordinate_modes != Modes::Candidates),
+                any(|of| of.given.coordinates.is_some() && of.given.coordinate_modes != Modes::Candidates),
                 "the kind of the motions of coordinates",
             ),
             (any(|of| of.given.pieces > 1), "the pieces of bodies (K is their sum)"),
@@ -70,21 +68,21 @@ impl<'a> Contents<'a> {
 
 impl<'a> Body<'a> {
     fn of(given: Given<'a>) -> Self {
-        let load = given.body.load.as_deref().map_or_else(|| vec![0.0; given.body.order], <[f64]>::to_vec);
+        let load = given.load.map_or_else(|| vec![0.0; given.unknowns], <[f64]>::to_vec);
         Self { given, load }
     }
 
     pub fn n(&self) -> usize {
-        self.given.body.order
+        self.given.unknowns
     }
 
     pub fn k(&self) -> Option<&Symmetric> {
         self.given.k.as_deref()
     }
 
-    /// x, y, z of every unknown, and its direction: 1 to 3 along, 4 to 6 about the axes.
-    pub fn xyz(&self) -> Option<(&[[f64; 3]], &[i32])> {
-        self.given.body.coordinates.as_ref().map(|of| (of.places(), of.directions()))
+    /// Number of motions that are declared; none: the library finds them.
+    pub fn declared(&self) -> Option<usize> {
+        self.given.motions.map(|(basis, _)| basis.len() / self.n().max(1))
     }
 
     /// The digits of K, if they are few by the library's measure.

@@ -5,9 +5,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use feti_contact::solver::{FrictionInput, Modes, Problem, RowKind, RowsInput, Storage, TripletInput};
-
-use feti_contact::linalg::Csr;
+use feti_contact::solver::{Csr, FrictionInput, Modes, Problem, RowKind, RowsInput, Storage, TripletInput};
 
 use crate::contents::{word, Contents};
 
@@ -306,16 +304,15 @@ pub fn write(all: &Contents, folder: &Path) -> Result<(), String> {
         let k = body.k().ok_or_else(|| format!("body {p} has no stiffness"))?;
         let text = mtx("symmetric", [n, n, k.val.len()], |i| k.lower_row(i));
         put(folder, &format!("K{}.mtx", p + 1), &text)?;
-        let motions = body.given.body.null_space.as_deref();
-        let (said, columns, basis) = motions
-            .map_or(("unknown", 0, &[][..]), |of| (word(of.modes), of.vectors.cols, &of.vectors.data[..]));
-        if columns > 0 || motions.is_none() {
+        let columns = body.declared().unwrap_or(0);
+        let (basis, said) = body.given.motions.map_or((&[][..], "unknown"), |(basis, of)| (basis, word(of)));
+        if columns > 0 || body.given.motions.is_none() {
             let head = format!("%%MatrixMarket matrix array real general\n% {said}\n{n} {columns}\n");
             put(folder, &format!("R{}.mtx", p + 1), &(head + &lines(basis)))?;
         }
         loads.extend_from_slice(&body.load);
         for i in 0..n {
-            let _ = match body.xyz() {
+            let _ = match body.given.coordinates {
                 Some((xyz, dir)) => {
                     let [x, y, z] = xyz[i];
                     writeln!(places, "{} {} {x:e} {y:e} {z:e}", i + 1, dir[i])
@@ -325,7 +322,7 @@ pub fn write(all: &Contents, folder: &Path) -> Result<(), String> {
         }
     }
     put(folder, "f.txt", &lines(&loads))?;
-    if all.bodies.iter().any(|body| body.xyz().is_some()) {
+    if all.bodies.iter().any(|body| body.given.coordinates.is_some()) {
         put(folder, "dofs.txt", &places)?;
     }
     for ((matrix, rhs, _), rows) in KINDS.iter().zip(&all.rows) {

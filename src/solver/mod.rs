@@ -30,9 +30,9 @@ pub use crate::body::{
     TripletInput,
 };
 pub use crate::certificate::{Certificate, Entry, FrictionState};
-pub use crate::constraints::{DofTableInput, FrictionInput, RowKind, RowsInput};
+pub use crate::constraints::{DofTableInput, Friction, FrictionInput, RowKind, RowSet, RowsInput};
 pub use crate::error::Proof;
-pub use crate::linalg::Borrowed;
+pub use crate::linalg::{Borrowed, Csr, Symmetric};
 pub use crate::mesh::ElementStorage;
 pub use crate::model::{
     options, Method, OptionInfo, OptionValue, PairMethod, PaperStep1, PaperUnits, Settings, Sizes,

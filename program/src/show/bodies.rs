@@ -15,9 +15,8 @@ const STIFFER: f64 = 2e5;
 pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     let mut found = Vec::new();
     for (p, body) in all.bodies.iter().enumerate() {
-        let motions = body.given.body.null_space.as_ref();
         let Some(digits) = body.digits() else { continue };
-        if resisted(body) > Some(ROUNDING) || motions.is_none_or(|of| of.vectors.cols == 0) {
+        if resisted(body) > Some(ROUNDING) || body.declared().unwrap_or(0) == 0 {
             let only = if digits == Digits::Single { "" } else { "only " };
             found.push(Suspicion::new(
                 format!("body {p}"),
@@ -40,10 +39,10 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
 
 /// The largest (K R)_i relative to its terms, over the motions that are declared as exact.
 pub fn resisted(body: &Body) -> Option<f64> {
-    let motions = body.given.body.null_space.as_ref().filter(|of| of.modes == Modes::Exact)?;
-    let (k, n) = (body.k().filter(|_| motions.vectors.cols > 0)?, body.n());
+    let (basis, _) = body.given.motions.filter(|(basis, of)| *of == Modes::Exact && !basis.is_empty())?;
+    let (k, n) = (body.k()?, body.n());
     let (mut y, mut terms, mut worst) = (vec![0.0; n], vec![0.0; n], 0.0f64);
-    for r in motions.vectors.data.chunks_exact(n.max(1)) {
+    for r in basis.chunks_exact(n.max(1)) {
         k.mul_with_terms(r, &mut y, &mut terms);
         let parts = y.iter().zip(&terms).filter(|(_, term)| **term > 0.0);
         worst = parts.map(|(y, term)| y.abs() / term).fold(worst, f64::max);

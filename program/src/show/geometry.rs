@@ -1,6 +1,6 @@
 //! What is suspicious in rows and bodies with coordinates: normals and gaps that do not fit the places of the unknowns.
 
-use feti_contact::constraints::RowSet;
+use feti_contact::solver::RowSet;
 
 use crate::contents::Contents;
 use crate::show::rows::groups;
@@ -30,7 +30,7 @@ pub fn suspicions(all: &Contents) -> Vec<Suspicion> {
     let rows = all.rows[0];
     for (bodies, own) in groups(all, rows) {
         let [a, .., b] = [&bodies[..], &bodies[..]].concat()[..] else { continue };
-        if bodies.len() > 2 || bodies.iter().any(|p| all.bodies[*p].xyz().is_none()) {
+        if bodies.len() > 2 || bodies.iter().any(|p| all.bodies[*p].given.coordinates.is_none()) {
             continue;
         }
         let all_seen = own.iter().map(|&i| see(all, rows, i, [a, b]));
@@ -55,7 +55,7 @@ fn see(all: &Contents, rows: &RowSet, row: usize, bodies: [usize; 2]) -> Seen {
     for (j, value) in rows.matrix.row(row) {
         let p = all.body_of(j);
         let (i, side) = (j - all.starts[p], usize::from(p == bodies[1] && bodies[0] != bodies[1]));
-        let Some((xyz, dir)) = all.bodies[p].xyz() else { continue };
+        let Some((xyz, dir)) = all.bodies[p].given.coordinates else { continue };
         let Some(d) = usize::try_from(dir[i] - 1).ok().filter(|d| *d < 3) else { continue };
         seen.normal[side][d] += value;
         weight[side] += value.abs();
@@ -113,7 +113,7 @@ fn tell(found: &mut Vec<Suspicion>, rows: &[usize], what: &str, remedy: &'static
 /// The points of all rows lie far apart, compared to the size of the smaller body.
 fn apart(all: &Contents, seen: &[Seen], bodies: [usize; 2], found: &mut Vec<Suspicion>) -> bool {
     let sizes = bodies.map(|p| {
-        let xyz = all.bodies[p].xyz().map_or(&[][..], |(xyz, _)| xyz);
+        let xyz = all.bodies[p].given.coordinates.map_or(&[][..], |(xyz, _)| xyz);
         let [low, high] =
             xyz.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[mut low, mut high], x| {
                 (0..3).for_each(|k| (low[k], high[k]) = (low[k].min(x[k]), high[k].max(x[k])));

@@ -1,7 +1,6 @@
 //! What a problem has: bodies, rows, friction, options.
 
-use feti_contact::constraints::RowSet;
-use feti_contact::solver::{Origin, Problem};
+use feti_contact::solver::{Origin, Problem, RowSet};
 
 use crate::contents::{word, Contents};
 use crate::show::{bodies, rows};
@@ -42,9 +41,9 @@ fn of_bodies(problem: &Problem, all: &Contents) -> String {
     let mut lines = vec![row(head)];
     for (p, body) in all.bodies.iter().enumerate() {
         let [low, high] = range(body.diagonal());
-        let given = body.given.body;
-        let declared = match (&given.null_space, body.xyz()) {
-            (Some(of), _) => format!("{} {}", of.vectors.cols, word(of.modes)),
+        let given = &body.given;
+        let declared = match (given.motions, given.coordinates) {
+            (Some((_, of)), _) => format!("{} {}", body.declared().unwrap_or(0), word(of)),
             (None, Some(_)) => format!("coordinates, {}", word(given.coordinate_modes)),
             (None, None) => "none".to_owned(),
         };
@@ -53,8 +52,8 @@ fn of_bodies(problem: &Problem, all: &Contents) -> String {
             .as_ref()
             .and_then(|of| of.factors.as_ref())
             .map_or("?".to_owned(), |of| of.null_space.to_string());
-        let searched = facts.is_some_and(|of| of.origin == Origin::Found && body.xyz().is_some());
-        let pieces = body.given.pieces;
+        let searched = facts.is_some_and(|of| of.origin == Origin::Found && given.coordinates.is_some());
+        let pieces = given.pieces;
         let pieces = if pieces > 1 { format!(" in {pieces} pieces") } else { String::new() };
         lines.push(vec![
             p.to_string(),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use feti_contact::constraints::RowSet;
+use feti_contact::solver::RowSet;
 
 use crate::contents::Contents;
 use crate::show::{listed, median, Suspicion};
