@@ -30,6 +30,7 @@ impl Suspicion {
 
 pub fn show(of: &ArgMatches) -> Result<End, String> {
     let mut problem = given::problem(of)?;
+    let options = problem.settings().changes();
     if command::one(of, "time-limit").is_none() {
         problem.set_f64("time_limit", SECONDS).map_err(|error| error.to_string())?;
     }
@@ -42,7 +43,7 @@ pub fn show(of: &ArgMatches) -> Result<End, String> {
     let status = if found.is_empty() { end::OK } else { end::INCOMPLETE };
     let text = match of.get_flag("json") {
         true => as_json(&found),
-        false => overview::text(&problem, &Contents::of(&problem)?) + &as_text(&found),
+        false => overview::text(&problem, &Contents::of(&problem)?, &options) + &as_text(&found),
     };
     Ok(End { text, status })
 }

@@ -6,12 +6,12 @@ use crate::contents::{word, Contents};
 use crate::show::{bodies, rows};
 use crate::table::{row, table};
 
-pub fn text(problem: &Problem, all: &Contents) -> String {
+pub fn text(problem: &Problem, all: &Contents, options: &str) -> String {
     let sizes = problem.sizes();
     let mut out = format!(
         "{} bodies, {} unknowns, {} contact rows, {} equality rows, {} nodes with friction\noptions: {}\n\nbodies\n",
         sizes.bodies, sizes.dofs, sizes.rows, sizes.equalities, sizes.nodes,
-        if all.options.is_empty() { "defaults" } else { &all.options }
+        if options.is_empty() { "defaults" } else { options }
     );
     out += &of_bodies(problem, all);
     for (own, kind) in all.rows.into_iter().zip(["contact rows", "equality rows"]) {
@@ -59,7 +59,7 @@ fn of_bodies(problem: &Problem, all: &Contents) -> String {
             p.to_string(),
             format!("{}{pieces}", body.n()),
             body.k().map_or(0, |k| k.val.len()).to_string(),
-            body.digits().map_or("double".to_owned(), |of| of.to_string()),
+            body.digits().map_or("all".to_owned(), |of| of.to_string()),
             format!("{low:.1e} to {high:.1e}"),
             declared,
             found + if searched { " in K" } else { "" },

@@ -168,6 +168,7 @@ fn the_healthy_file_is_not_suspicious_with_motions_or_coordinates_alone() {
         scene.write(&path);
         let (out, _, status) = said(&["show", path.to_str().unwrap()]);
         assert!(status == 0 && out.ends_with("nothing suspicious\n"), "{out}");
+        assert!(out.contains("\noptions: defaults\n"), "the limit of show is no option of the file: {out}");
     }
     std::fs::remove_dir_all(folder).unwrap();
 }
