@@ -131,3 +131,25 @@ fn factors_in_single_precision_take_less_memory_and_give_the_same_answer() {
         assert_eq!(solved(&mut single).0, own);
     }
 }
+
+/// The energy of all bodies says little about the one that is refused, but its ratio says where it will pass.
+#[test]
+fn cut_bodies_beside_others_with_a_million_times_their_loads_are_refused_twice_at_most() {
+    for ratio in [1e-4, 1e-6] {
+        let (mut model, light) = (blocks(8), blocks(8));
+        let n = model.bodies.len();
+        model.bodies.extend(light.bodies);
+        model.loads.extend(light.loads.iter().map(|load| load.iter().map(|f| ratio * f).collect()));
+        let moved =
+            |entries: &[(usize, usize, f64)]| entries.iter().map(|&(p, j, v)| (p + n, j, v)).collect();
+        model.rows.extend(light.rows.iter().map(|(entries, gap)| (moved(entries), *gap)));
+        // open, but one group
+        model.rows.push((vec![(0, 400, 1.0), (n, 400, -1.0)], 1.0));
+        let mut problem = model.by_elements(27, true).unwrap();
+        problem.set_f64("certificate_tolerance", 1e-8).unwrap();
+        solved(&mut problem);
+        let tries = &problem.report().unwrap().tries;
+        let refused: Vec<_> = tries.made().filter(|(name, _)| name.starts_with("tightened")).collect();
+        assert!(refused.len() == 1 && refused[0].0 == "tightened by" && refused[0].1 <= 2, "{refused:?}");
+    }
+}

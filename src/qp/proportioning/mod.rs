@@ -142,7 +142,7 @@ fn run(
             if stop.stays(missed) && judge.has_better_data() {
                 return Ok(Verdict::Inaccurate);
             }
-            if stop.tighten_by(missed) {
+            if stop.tighten_by(missed, it) {
                 continue;
             }
             it.refresh()?;

@@ -65,12 +65,18 @@ impl Stop {
     }
 
     /// P1.3: tightens by the reported violation; false if steps cannot correct a violation of this size.
-    pub fn tighten_by(&mut self, missed: Option<f64>) -> bool {
-        let missed = missed.filter(|missed| *missed < MISSED && self.tightenings < BY_VIOLATION);
-        let missed = missed.filter(|_| Rung::TightenBy.is_tried());
+    pub fn tighten_by(&mut self, missed: Option<f64>, it: &Iterate) -> bool {
+        // the energy of all bodies may be far above that of the one that was refused
+        let by_energy = self.share * it.energy() > self.residual;
+        let can = |missed: &f64| by_energy || *missed < MISSED && self.tightenings < BY_VIOLATION;
+        let missed = missed.filter(can).filter(|_| Rung::TightenBy.is_tried());
         if let Some(missed) = missed {
-            self.tightenings += 1;
-            self.demand((BY_MISSED / missed).min(BY_MISSED));
+            let part = (BY_MISSED / missed).min(BY_MISSED);
+            self.share *= part;
+            if !by_energy {
+                self.tightenings += 1;
+                self.residual *= part;
+            }
         }
         missed.is_some()
     }
@@ -85,13 +91,9 @@ impl Stop {
             return Some(Verdict::Inaccurate);
         }
         self.tightenings += 1;
-        self.demand(TIGHTER);
+        self.residual *= TIGHTER;
+        self.share *= TIGHTER;
         self.noise *= TIGHTER;
         None
-    }
-
-    fn demand(&mut self, part: f64) {
-        self.residual *= part;
-        self.share *= part;
     }
 }
