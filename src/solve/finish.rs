@@ -195,7 +195,7 @@ impl<'a, 'b> Finish<'a, 'b> {
         }
         if !self.passed {
             self.keep(point, feedback.face.undetermined(), is_better)?;
-            if !self.passes() && feedback.face.is_truncated() && Rung::RowsClosed.is_tried() {
+            if !self.passes() && feedback.face.left_out().next().is_some() && Rung::RowsClosed.is_tried() {
                 let correct = |point: &mut SplitPoint| self.correct(point, FaceSolver::Dense(&feedback));
                 point.close(self.recovery, &feedback.face, correct)?;
             }
