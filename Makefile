@@ -213,13 +213,16 @@ test:
 	ctest --test-dir build/ctest --output-on-failure -j 2
 	@$(MAKE) --no-print-directory python
 
-# The Python package, its library by the profile release, which `make lib` has built already.
-PYTHON := build/python
-$(PYTHON)/installed: python/tests/requirements.txt
+# Environments of Python, each with the packages of a file of its own.
+build/python/installed build/mpi/python/installed build/hosts/python/installed build/tools/ford/installed:
 	@tools/setup.sh
 	python3 -m venv --clear $(@D)
 	$(@D)/bin/pip install --quiet --requirement $<
 	touch $@
+
+# The Python package, its library by the profile release, which `make lib` has built already.
+PYTHON := build/python
+$(PYTHON)/installed: python/tests/requirements.txt
 
 python: $(PYTHON)/installed
 	CARGO=$(CARGO) $(PYTHON)/bin/pip install --quiet --no-build-isolation --no-deps --force-reinstall ./python
@@ -234,10 +237,6 @@ driver: stage data
 # Several ranks, with the MPI of the system; mpi4py for hosts in Python.
 MPI_PYTHON := build/mpi/python
 $(MPI_PYTHON)/installed: tests/mpi/requirements.txt
-	@tools/setup.sh
-	python3 -m venv --clear $(@D)
-	$(@D)/bin/pip install --quiet --requirement $<
-	touch $@
 
 mpi mpi-short: export PYTHON = $(CURDIR)/$(MPI_PYTHON)/bin/python
 mpi: stage $(MPI_PYTHON)/installed
@@ -257,10 +256,6 @@ mpi-short: stage $(MPI_PYTHON)/installed
 # Hosts in Python: two packages of PyPI, and one of Debian, which has modules for Debian's own Python alone.
 HOSTS := build/hosts/python
 $(HOSTS)/installed: adapters/python/requirements.txt
-	@tools/setup.sh
-	python3 -m venv --clear $(@D)
-	$(@D)/bin/pip install --quiet --requirement $<
-	touch $@
 
 # CalculiX as a host, from Debian's sources.
 hosts: stage
@@ -320,10 +315,6 @@ $(TOOLS)/mdbook-$(MDBOOK):
 	touch $@
 
 $(TOOLS)/ford/installed: docs/book/requirements.txt
-	@tools/setup.sh
-	python3 -m venv --clear $(@D)
-	$(@D)/bin/pip install --quiet --requirement $<
-	touch $@
 
 # Manual pages alone, in build/docs/man; needs nothing but the crates.
 man:

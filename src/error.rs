@@ -40,6 +40,25 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// All that have no argument.
+    pub const ALL: [Self; 15] = [
+        Self::Memory,
+        Self::State,
+        Self::LoadNotHeld,
+        Self::Slides,
+        Self::GapsContradict,
+        Self::NullSpace,
+        Self::Indefinite,
+        Self::Overflow,
+        Self::Internal,
+        Self::Unsupported,
+        Self::Cancelled,
+        Self::TimeOver,
+        Self::Callback,
+        Self::Io,
+        Self::Communication,
+    ];
+
     /// The name of its status in C.
     pub fn status(&self) -> &'static str {
         self.named().0

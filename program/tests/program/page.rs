@@ -48,24 +48,6 @@ fn every_spoilt_file_of_the_test_is_a_row_of_the_table() {
 /// The page adds links and the marks of code; a link in brackets at the end of a cure is of the page alone.
 #[test]
 fn the_cures_of_the_page_are_those_that_the_library_has() {
-    let kinds = [
-        Kind::Argument(""),
-        Kind::Memory,
-        Kind::State,
-        Kind::LoadNotHeld,
-        Kind::Slides,
-        Kind::GapsContradict,
-        Kind::NullSpace,
-        Kind::Indefinite,
-        Kind::Overflow,
-        Kind::Internal,
-        Kind::Unsupported,
-        Kind::Cancelled,
-        Kind::TimeOver,
-        Kind::Callback,
-        Kind::Io,
-        Kind::Communication,
-    ];
     let outcomes = [
         Outcome::Solved,
         Outcome::Marginal,
@@ -75,7 +57,7 @@ fn the_cures_of_the_page_are_those_that_the_library_has() {
         Outcome::Time,
         Outcome::Cancelled,
     ];
-    let own = kinds.map(|kind| (kind.status(), kind.cure())).into_iter();
+    let own = [Kind::Argument("")].into_iter().chain(Kind::ALL).map(|kind| (kind.status(), kind.cure()));
     let page = read("docs/statuses.md");
     for (status, cure) in own.chain(outcomes.map(|outcome| (outcome.status(), outcome.cure()))) {
         let row = page.lines().find(|line| line.starts_with(&format!("| `{status}` |"))).unwrap();

@@ -8,24 +8,6 @@ use crate::ranks::damaged;
 #[derive(Debug, Clone)]
 pub struct Failure(pub Error);
 
-const KINDS: [Kind; 15] = [
-    Kind::Memory,
-    Kind::State,
-    Kind::LoadNotHeld,
-    Kind::Slides,
-    Kind::GapsContradict,
-    Kind::NullSpace,
-    Kind::Indefinite,
-    Kind::Overflow,
-    Kind::Internal,
-    Kind::Unsupported,
-    Kind::Cancelled,
-    Kind::TimeOver,
-    Kind::Callback,
-    Kind::Io,
-    Kind::Communication,
-];
-
 /// Arguments of calls that all ranks make, and of others that only all ranks together can refuse.
 const ARGUMENTS: [&str; 25] = [
     "argument", "body", "cap", "count", "dim", "dof", "eqs", "id", "info", "k", "lambda", "lambda_t",
@@ -34,8 +16,10 @@ const ARGUMENTS: [&str; 25] = [
 
 pub fn put_kind(kind: Kind, to: &mut Vec<u8>) {
     let place = match kind {
-        Kind::Argument(name) => KINDS.len() + ARGUMENTS.iter().position(|known| *known == name).unwrap_or(0),
-        kind => KINDS.iter().position(|known| *known == kind).unwrap_or(0),
+        Kind::Argument(name) => {
+            Kind::ALL.len() + ARGUMENTS.iter().position(|known| *known == name).unwrap_or(0)
+        }
+        kind => Kind::ALL.iter().position(|known| *known == kind).unwrap_or(0),
     };
     (place as u8).put(to);
 }
@@ -43,8 +27,8 @@ pub fn put_kind(kind: Kind, to: &mut Vec<u8>) {
 pub fn take_kind(from: &mut &[u8]) -> Result<Kind> {
     let place = usize::from(u8::take(from)?);
     let argument = |at: usize| ARGUMENTS.get(at).map(|name| Kind::Argument(name));
-    let known = KINDS.get(place).copied();
-    known.or_else(|| argument(place.checked_sub(KINDS.len())?)).ok_or_else(damaged)
+    let known = Kind::ALL.get(place).copied();
+    known.or_else(|| argument(place.checked_sub(Kind::ALL.len())?)).ok_or_else(damaged)
 }
 
 /// Its proof belongs to the findings.
